@@ -1,0 +1,23 @@
+# Every third-party package, each used by the one folder named beside it.
+find_package(glm REQUIRED)                                         # everybody       libglm-dev
+find_package(OpenCASCADE 7.6.3 REQUIRED)                           # cad_import      libocct-*-dev
+find_package(assimp 5.2 REQUIRED)                                  # cad_import      libassimp-dev
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(OPENMESH REQUIRED IMPORTED_TARGET openmesh)      # tessellate      libopenmesh-dev
+find_package(embree 3.13 REQUIRED)                                 # optics          libembree-dev
+find_package(TBB REQUIRED)                                         # optics, render  libtbb-dev
+find_package(OpenImageIO 2.4 REQUIRED)                             # render          libopenimageio-dev
+# Debian's OpenImageIO names OpenCV's include folder without depending on it; nothing here needs it.
+get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+list(FILTER oiio_includes EXCLUDE REGEX opencv)
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_includes}")
+pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)            # render          libepoxy-dev
+pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)                # render          libegl-dev
+find_package(nlohmann_json 3.11 REQUIRED)                          # app, examples   nlohmann-json3-dev
+find_package(CLI11 REQUIRED)                                       # app             libcli11-dev
+find_package(tomlplusplus REQUIRED)                                # app             libtomlplusplus-dev
+find_package(spdlog REQUIRED)                                      # app             libspdlog-dev
+find_package(Freetype REQUIRED)                                    # examples        libfreetype-dev
+if(CATOPTRA_BUILD_TESTS)
+  find_package(GTest REQUIRED)                                     # tests           libgtest-dev
+endif()

@@ -1,0 +1,43 @@
+// How far a picture is from the reference: object-side angle, screen pixels, PSNR, FLIP.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "render/frame.h"
+#include "render/scene.h"
+
+namespace catoptra::render {
+
+struct ErrorQuantiles {
+  double median = 0, p99 = 0, p999 = 0, max = 0;
+};
+
+/// Error of one optic over the pixels where both pictures show it.
+struct OpticError {
+  std::size_t pixels = 0;           ///< compared
+  std::size_t outline_pixels = 0;   ///< shown by one picture only: left out
+  ErrorQuantiles arcmin;            ///< angle at the last surface point between the exact direction and what is shown
+  ErrorQuantiles screen_px;         ///< the same through the local derivative of direction by pixel
+};
+
+struct ImageError {
+  double psnr_db = 0;         ///< of sRGB-encoded, clamped values
+  double psnr_linear_db = 0;  ///< of linear values, clamped to [0, 1]
+  double flip_mean = 0;       ///< LDR-FLIP, Andersson et al. 2020, 67 px/deg
+};
+
+struct Comparison {
+  std::vector<OpticError> optics;  ///< one per optic of the scene
+  ImageError image;
+};
+
+/// `reference` must be a raytrace frame with geometry; `frame` one of another mode with geometry, same size.
+[[nodiscard]] Comparison compare(const Frame& reference, const Frame& frame, const Scene& scene);
+
+/// Per-pixel error in arcmin (-1 where there is none), for error pictures.
+[[nodiscard]] std::vector<float> error_map_arcmin(const Frame& reference, const Frame& frame);
+
+[[nodiscard]] ImageError image_error(const Frame& reference, const Frame& frame);
+
+}  // namespace catoptra::render

@@ -1,0 +1,64 @@
+// A rendered picture with the geometry it shows.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace catoptra::render {
+
+/// Row-major, top row first, left pixel first; every array that is not empty has width * height entries.
+struct Frame {
+  int width = 0, height = 0;
+  std::vector<glm::vec4> color;  ///< linear RGB, alpha = 1
+
+  // Geometry of the pixel's centre (sample 0), filled only where asked for, and only where an optic shows
+  // (optic_id >= 0), except `position`, which is there for every pixel.
+  std::vector<glm::vec4> position;   ///< xyz, w = 1: world point shown, mm; w = 0: a direction (the sky)
+  std::vector<glm::vec3> surface;    ///< last point on the optic, mm
+  std::vector<glm::vec3> direction;  ///< unit outgoing direction of the exact ray where the mode knows it
+  std::vector<std::int32_t> optic_id;  ///< index in Scene::optics; -1: no optic
+};
+
+struct PatchStats {
+  glm::dvec3 viewpoint_mm{0};
+  double residual_mm = 0;
+  double fov_rad[2] = {0, 0};
+};
+
+struct OpticStats {
+  std::string name;
+  std::string kind;  ///< "mirror" or "lens"
+  std::size_t vertices = 0;
+  std::size_t rays = 0;  ///< traced for this optic in this frame
+  std::vector<PatchStats> patches;
+};
+
+/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "readback", "raster", "map" as they apply.
+struct FrameStats {
+  std::vector<OpticStats> optics;
+  std::map<std::string, double> time_ms;
+  std::size_t rays = 0;  ///< all rays of the frame
+};
+
+struct RenderResult {
+  Frame frame;
+  FrameStats stats;
+  std::vector<std::string> warnings;
+};
+
+/// Options of one frame.
+struct FrameOptions {
+  int width = 1280, height = 720;
+  int samples = 1;           ///< per pixel; sample 0 is the pixel's centre
+  bool geometry = false;     ///< fill Frame::position, surface, direction, optic_id
+  std::size_t threads = 0;   ///< CPU threads; 0: all
+  bool read_back = true;     ///< false: leave the picture on the GPU (bench)
+  bool overlay_vertices = false;  ///< red balls at the exact hits, and the optic's mesh in white
+  bool overlay_rays = false;      ///< the vertex rays as lines
+};
+
+}  // namespace catoptra::render

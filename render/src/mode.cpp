@@ -1,0 +1,28 @@
+#include <array>
+#include <utility>
+
+#include "render/renderer.h"
+
+namespace catoptra::render {
+namespace {
+
+constexpr std::array<std::pair<Mode, std::string_view>, 4> kNames{{{Mode::pvrr, "pvrr"},
+                                                                  {Mode::hybrid, "hybrid"},
+                                                                  {Mode::raytrace, "raytrace"},
+                                                                  {Mode::cubemap, "cubemap"}}};
+
+}  // namespace
+
+std::string_view mode_name(Mode mode) {
+  for (const auto& [value, name] : kNames)
+    if (value == mode) return name;
+  return "";
+}
+
+std::optional<Mode> mode_from_name(std::string_view name) {
+  for (const auto& [value, text] : kNames)
+    if (text == name) return value;
+  return std::nullopt;
+}
+
+}  // namespace catoptra::render

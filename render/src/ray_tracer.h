@@ -1,0 +1,37 @@
+// The reference: every pixel by exact rays, with packets of 16 on all cores (design 4).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "optics/ray_scene.h"
+#include "render/frame.h"
+#include "render/scene.h"
+#include "render/src/textures.h"
+
+namespace catoptra::render {
+
+/// Objects of the shared ray scene: surroundings 0 .. surroundings.size() - 1, then the optics in order.
+class RayTracer {
+ public:
+  /// Keeps references to all three, which must outlive it.
+  RayTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays);
+  ~RayTracer();
+
+  /// Every pixel: mode `raytrace`.
+  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options) const;
+
+  /// Mode `hybrid`: traces only the pixels listed (index = row * width + column), which are expected to show an optic,
+  /// and writes their colour (and geometry where asked) into `frame`, which has the options' size. A listed pixel whose
+  /// primary ray meets no optic gets what the ray meets. Returns the number of rays traced.
+  std::size_t trace_pixels(const Camera& camera, const FrameOptions& options, std::span<const std::uint32_t> pixels,
+                           Frame& frame) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace catoptra::render

@@ -1,0 +1,1 @@
+#include "tessellate/optic_arrays.h"
