@@ -8,8 +8,8 @@
 namespace catoptra::render {
 
 /// Writes `frame` by the suffix: .png (8-bit sRGB, colours clamped) or .exr (linear half colour; with
-/// `with_geometry` also float layers position.XYZ, surface.XYZ, direction.XYZ and optic.ID). Written to a temporary
-/// name beside the target and renamed. Throws catoptra::Error.
+/// `with_geometry` also float layers position.XYZ and position.W, surface.XYZ, direction.XYZ and optic.ID).
+/// Written to a temporary name beside the target and renamed. Throws catoptra::Error.
 void write_image(const Frame& frame, const std::filesystem::path& file, bool with_geometry = false);
 
 /// Reads colour (to linear) and, from an EXR with the layers above, the geometry. Throws catoptra::Error.
