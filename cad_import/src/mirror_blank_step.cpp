@@ -2,7 +2,6 @@
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <IFSelect_ReturnStatus.hxx>
-#include <Interface_Static.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Reader.hxx>
@@ -20,6 +19,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "cad_import/src/kernel_session.h"
 #include "cad_import/src/mirror_blank_parts.h"
 
 namespace catoptra::cad_import {
@@ -61,10 +61,11 @@ Handle(TDocStd_Document) document_of(const MirrorSolid& mirror) {
 }
 
 void write_step(const MirrorSolid& mirror, const std::filesystem::path& file, const std::string& title) {
+  KernelSession session;
   STEPCAFControl_Controller::Init();
+  session.set("write.step.unit", "MM");
+  session.set("write.stepcaf.subshapes.name", 1);
   const Handle(TDocStd_Document) document = document_of(mirror);
-  Interface_Static::SetCVal("write.step.unit", "MM");
-  Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   STEPCAFControl_Writer writer;
   const bool transferred = writer.Transfer(document);
   XCAFApp_Application::GetApplication()->Close(document);
@@ -78,6 +79,7 @@ void write_step(const MirrorSolid& mirror, const std::filesystem::path& file, co
 
 /// What a reader will find: one valid solid whose faces carry the names they were given.
 void check_written(const std::filesystem::path& file, const MirrorSolid& mirror) {
+  const KernelSession session;
   STEPControl_Reader reader;
   if (reader.ReadFile(file.string().c_str()) != IFSelect_RetDone)
     throw Error(file.string(), "", "cannot be read back");
