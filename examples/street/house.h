@@ -1,0 +1,28 @@
+// Terraced houses with windows, doors and shops.
+#pragma once
+
+#include <string>
+
+#include "examples/street/model.h"
+
+namespace catoptra::examples {
+
+/// A house whose front lies in the plane y = 0 and looks towards +y, from x = 0 to x = -width, behind it
+/// `depth`. Seen from the street its left end is at x = 0.
+struct HouseDesign {
+  float width = 8, depth = 9;
+  int storeys = 2;   ///< each 2.9 m high
+  int bays = 3;      ///< windows a storey
+  int door_bay = 0;  ///< counted from the left
+  std::string wall = "bricks";
+  std::string door = "green door";
+  std::string shop;     ///< paint of the sign over a shop on the ground floor; empty: a dwelling
+  std::string hanging;  ///< paint of a sign that hangs out over the pavement; empty: none
+};
+
+[[nodiscard]] Model make_house(const HouseDesign& design);
+
+/// A tower of 3.6 m square and 9 m with a clock on its front and a notice board below; placed like a house.
+[[nodiscard]] Model make_clock_tower();
+
+}  // namespace catoptra::examples

@@ -1,0 +1,42 @@
+// Writes the examples' models: street.glb, flank.glb, cabin.glb, housing.glb and sky.hdr into a folder.
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "examples/street/flank.h"
+#include "examples/street/glb.h"
+#include "examples/street/palette.h"
+#include "examples/street/street.h"
+
+namespace {
+
+using namespace catoptra::examples;
+
+void write(const std::filesystem::path& file, const Model& model, const Palette& palette) {
+  const auto bytes = write_glb(model, palette, file.stem().string());
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  std::cout << file.filename().string() << ": " << model.triangle_count() << " triangles, " << bytes.size()
+            << " bytes\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 3) {
+    std::cerr << "usage: make_models FONT.ttf FOLDER\n";
+    return 2;
+  }
+  const Palette palette = make_palette(argv[1]);
+  const std::filesystem::path folder = argv[2];
+  std::filesystem::create_directories(folder);
+  write(folder / "street.glb", make_street(), palette);
+  write(folder / "flank.glb", make_flank(), palette);
+  write(folder / "cabin.glb", make_cabin(), palette);
+  write(folder / "housing.glb", make_housing(0.170f, 0.110f, 1.2f), palette);
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "make_models: " << error.what() << '\n';
+  return 1;
+}
