@@ -24,13 +24,14 @@ struct ExactHit {
 /// Distance between ray and surface point at which the iteration has converged, mm.
 inline constexpr double kExactHitTolerance = 1e-10;
 
-/// Solves surface(u, v) = origin + t direction from the start (u, v). Nullopt where the iteration leaves the surface
-/// or does not converge within 20 steps, or t lies outside the ray's range. Trimming is not tested.
+/// Solves surface(u, v) = origin + t direction from the start (u, v). Nullopt where the iteration leaves the
+/// surface or does not converge within 20 steps, or t lies outside the ray's range. Trimming is not tested.
 [[nodiscard]] std::optional<ExactHit> newton_hit(const cad_import::ExactSurface& surface, const Ray& ray,
                                                  glm::dvec2 start_uv);
 
-/// The exact hit that belongs to a hit `mesh_hit` on the optic's mesh: Newton from the interpolated (u, v) of the
-/// triangle; where that fails or lands outside the face's trimming, from the neighbouring faces of the optic.
+/// The exact hit that belongs to a hit `mesh_hit` on the optic's mesh: Newton from the interpolated (u, v) of
+/// the triangle; where that fails or lands outside the face's trimming, from the neighbouring faces of the
+/// optic.
 [[nodiscard]] std::optional<ExactHit> exact_hit(const Optic& optic, const Ray& ray, const Hit& mesh_hit);
 
 }  // namespace catoptra::optics

@@ -1,4 +1,5 @@
-// PVRR step 3: texture coordinates at which each vertex shows exactly what its ray hits (paper 3.4; design 2.5).
+// PVRR step 3: texture coordinates at which each vertex shows exactly what its ray hits (paper 3.4;
+// design 2.5).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -19,8 +20,8 @@ enum class MapInterpolation {
 
 /// Homogeneous map coordinates (s q, t q, q), one per vertex; the vertex shows (s, t). q > 0.
 /// Vertices that do not face the eye get the coordinates of their direction's projection, or (0.5, 0.5, 1).
-[[nodiscard]] std::vector<glm::dvec3> map_coordinates(const Optic& optic, std::span<const VertexHit> hits,
-                                                      const VirtualView& view,
-                                                      MapInterpolation interpolation = MapInterpolation::homography);
+[[nodiscard]] std::vector<glm::dvec3> map_coordinates(
+    const Optic& optic, std::span<const VertexHit> hits, const VirtualView& view,
+    MapInterpolation interpolation = MapInterpolation::homography);
 
 }  // namespace catoptra::optics

@@ -16,7 +16,8 @@ enum class OpticKind { mirror, lens };
 struct Optic {
   std::string name;
   OpticKind kind = OpticKind::mirror;
-  std::vector<cad_import::Face> faces;  ///< the optical faces; OpticVertex::face and OpticTriangle::face index them
+  std::vector<cad_import::Face>
+      faces;  ///< the optical faces; OpticVertex::face and OpticTriangle::face index them
   tessellate::OpticArrays mesh;
   glm::vec3 reflectance{0.9f};  ///< linear RGB
   bool flip = false;            ///< the reflecting side is opposite to the faces' normals

@@ -13,12 +13,13 @@
 
 namespace catoptra::optics {
 
-/// Decides whether a surface point is there (alpha-tested foliage): triangle index, weights of the second and third
-/// vertex. Called from many threads. Empty: always there.
+/// Decides whether a surface point is there (alpha-tested foliage): triangle index, weights of the second and
+/// third vertex. Called from many threads. Empty: always there.
 using AlphaTest = std::function<bool(std::uint32_t triangle, float u, float v)>;
 
-/// A two-level scene: surroundings are built once (quality MEDIUM), optics may move and are refitted, and committing
-/// a moved optic rebuilds nothing of the surroundings. Queries are const and thread-safe after commit().
+/// A two-level scene: surroundings are built once (quality MEDIUM), optics may move and are refitted, and
+/// committing a moved optic rebuilds nothing of the surroundings. Queries are const and thread-safe after
+/// commit().
 class RayScene {
  public:
   RayScene();

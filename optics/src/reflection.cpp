@@ -5,7 +5,9 @@
 
 namespace catoptra::optics {
 
-glm::dvec3 reflect(const glm::dvec3& d, const glm::dvec3& n) { return glm::normalize(d - 2 * glm::dot(d, n) * n); }
+glm::dvec3 reflect(const glm::dvec3& d, const glm::dvec3& n) {
+  return glm::normalize(d - 2 * glm::dot(d, n) * n);
+}
 
 MirrorMagnification mirror_magnification(double eye_distance_mm, double radius_mm, double incidence_rad) {
   const double c = std::cos(incidence_rad);
