@@ -9,7 +9,8 @@
 
 namespace catoptra::tessellate {
 
-/// A vertex on the exact surface. Where faces meet at a crease, one entry per distinct normal (same `position_mm`).
+/// A vertex on the exact surface. Where faces meet at a crease, one entry per distinct normal (same
+/// `position_mm`).
 struct OpticVertex {
   glm::dvec3 position_mm;
   glm::dvec3 normal;      ///< exact unit normal, out of the material
@@ -23,7 +24,7 @@ struct OpticVertex {
 struct OpticTriangle {
   std::array<std::uint32_t, 3> vertices;  ///< indices in OpticArrays::vertices
   int face = 0;                           ///< the face that the triangle lies on
-  std::array<glm::dvec2, 3> uv;           ///< each corner's parameters on that face (a border vertex has one per face)
+  std::array<glm::dvec2, 3> uv;  ///< each corner's parameters on that face (a border vertex has one per face)
 };
 
 struct OpticArrays {

@@ -1,0 +1,134 @@
+#include "tessellate/src/sizing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace catoptra::tessellate {
+namespace {
+
+using cad_import::ExactSurface;
+
+constexpr int kIntervals = 8;         // per direction, at whose ends the surface is sampled
+constexpr double kMaxAspect = 8;      // a cell's longer side over its shorter one
+constexpr double kDegenerate = 1e-9;  // |du x dv| / (|du| |dv|) below which a sample says nothing
+
+/// Largest admissible steps at one point, in mm or in parameter units.
+struct Steps {
+  double u = kUnlimited, v = kUnlimited;
+};
+
+/// A cell of steps (a, b) has on its diagonal the deviation (l a^2 + 2 m a b + n b^2) / 8. For a given
+/// deviation the largest cell has l a^2 = n b^2; where the surface is straight in one direction, half the
+/// deviation goes to the twist.
+Steps chord_steps(double l, double m, double n, double chord_mm) {
+  if (chord_mm == kUnlimited) return {};
+  const double budget = 8 * chord_mm;
+  const double root = std::sqrt(l * n);
+  if (root > 0) {
+    const double share = budget / (2 + 2 * m / root);
+    return {std::sqrt(share / l), std::sqrt(share / n)};
+  }
+  if (m == 0) return {l > 0 ? std::sqrt(budget / l) : kUnlimited, n > 0 ? std::sqrt(budget / n) : kUnlimited};
+  if (l > 0) return {std::sqrt(0.5 * budget / l), std::sqrt(0.5 * budget * l) / (2 * m)};
+  if (n > 0) return {std::sqrt(0.5 * budget * n) / (2 * m), std::sqrt(0.5 * budget / n)};
+  return {std::sqrt(0.5 * budget / m), std::sqrt(0.5 * budget / m)};
+}
+
+/// Where one step hit a cap (the face's extent or the aspect ratio), the other may take what is left of the
+/// budget.
+double rest_of_budget(double own, double mixed, double other, double other_step, double chord_mm,
+                      double step) {
+  const double budget = 8 * chord_mm - other * other_step * other_step;
+  const double linear = 2 * mixed * other_step;
+  if (own <= 0 || budget <= 0) return step;
+  return std::max(step, (std::sqrt(linear * linear + 4 * own * budget) - linear) / (2 * own));
+}
+
+Steps steps_at(const cad_import::SurfaceDerivatives& s, const glm::dvec2& extent, const StepLimits& limits) {
+  const double length_u = glm::length(s.du), length_v = glm::length(s.dv);
+  const glm::dvec3 cross = glm::cross(s.du, s.dv);
+  const double area = glm::length(cross);
+  if (!(area > kDegenerate * length_u * length_v)) return {};
+  const glm::dvec3 normal = cross / area;
+  // Second fundamental form per mm in both directions.
+  const double l = std::abs(glm::dot(s.duu, normal)) / (length_u * length_u);
+  const double m = std::abs(glm::dot(s.duv, normal)) / (length_u * length_v);
+  const double n = std::abs(glm::dot(s.dvv, normal)) / (length_v * length_v);
+  const Steps chord = chord_steps(l, m, n, limits.chord_mm);
+
+  // Turn of the unit normal per mm; each direction gets half of the squared angle of the diagonal.
+  const auto tangential = [&](const glm::dvec3& d) {
+    return glm::length(d - normal * glm::dot(normal, d)) / area;
+  };
+  const double turn_u = tangential(glm::cross(s.duu, s.dv) + glm::cross(s.du, s.duv)) / length_u;
+  const double turn_v = tangential(glm::cross(s.duv, s.dv) + glm::cross(s.du, s.dvv)) / length_v;
+  const double angle = limits.angle_rad * std::sqrt(0.5);
+  const double most_u =
+      std::min({turn_u > 0 ? angle / turn_u : kUnlimited, limits.length_mm, extent.x * length_u});
+  const double most_v =
+      std::min({turn_v > 0 ? angle / turn_v : kUnlimited, limits.length_mm, extent.y * length_v});
+
+  const Steps wanted{std::min(chord.u, most_u), std::min(chord.v, most_v)};
+  Steps mm{std::min(wanted.u, kMaxAspect * wanted.v), std::min(wanted.v, kMaxAspect * wanted.u)};
+  if (limits.chord_mm < kUnlimited) {
+    if (mm.u < chord.u)
+      mm.v = std::min({rest_of_budget(n, m, l, mm.u, limits.chord_mm, mm.v), most_v, kMaxAspect * mm.u});
+    else if (mm.v < chord.v)
+      mm.u = std::min({rest_of_budget(l, m, n, mm.v, limits.chord_mm, mm.u), most_u, kMaxAspect * mm.v});
+  }
+  return {mm.u / length_u, mm.v / length_v};
+}
+
+}  // namespace
+
+CellCount::CellCount(double begin, double end, const std::vector<double>& density)
+    : begin_(begin), end_(end) {
+  const double interval = (end - begin) / static_cast<double>(density.size());
+  nodes_.assign(1, 0);
+  for (const double d : density) nodes_.push_back(nodes_.back() + d * interval);
+  even_cells_ = *std::max_element(density.begin(), density.end()) * (end - begin);
+}
+
+double CellCount::to_cells(double parameter) const {
+  const auto last = static_cast<double>(nodes_.size() - 1);
+  const double x = (parameter - begin_) / (end_ - begin_) * last;
+  const double k = std::clamp(std::floor(x), 0.0, last - 1);
+  const auto i = static_cast<std::size_t>(k);
+  return nodes_[i] + (x - k) * (nodes_[i + 1] - nodes_[i]);
+}
+
+double CellCount::to_parameter(double cells) const {
+  const auto after = std::upper_bound(nodes_.begin() + 1, nodes_.end() - 1, cells);
+  const auto i = static_cast<std::size_t>(after - nodes_.begin()) - 1;
+  const double x = static_cast<double>(i) + (cells - nodes_[i]) / (nodes_[i + 1] - nodes_[i]);
+  return begin_ + x / static_cast<double>(nodes_.size() - 1) * (end_ - begin_);
+}
+
+FaceSizing size_face(const ExactSurface& surface, const UvBox& box, const StepLimits& limits) {
+  const glm::dvec2 extent = box.extent();
+  if (limits.grid) {
+    const double columns = limits.grid->columns - 1, rows = limits.grid->rows - 1;
+    return {box, CellCount(box.min.x, box.max.x, {columns / extent.x}),
+            CellCount(box.min.y, box.max.y, {rows / extent.y})};
+  }
+  std::array<double, kIntervals + 1> node_u{}, node_v{};  // densities
+  node_u.fill(1 / extent.x);
+  node_v.fill(1 / extent.y);
+  for (std::size_t j = 0; j <= kIntervals; ++j)
+    for (std::size_t i = 0; i <= kIntervals; ++i) {
+      const double u = box.min.x + extent.x * static_cast<double>(i) / kIntervals;
+      const double v = box.min.y + extent.y * static_cast<double>(j) / kIntervals;
+      const Steps steps = steps_at(surface.d2(u, v), extent, limits);
+      node_u[i] = std::max(node_u[i], 1 / steps.u);
+      node_v[j] = std::max(node_v[j], 1 / steps.v);
+    }
+  std::vector<double> density_u, density_v;
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    density_u.push_back(std::max(node_u[i], node_u[i + 1]));
+    density_v.push_back(std::max(node_v[i], node_v[i + 1]));
+  }
+  return {box, CellCount(box.min.x, box.max.x, density_u), CellCount(box.min.y, box.max.y, density_v)};
+}
+
+}  // namespace catoptra::tessellate
