@@ -32,6 +32,8 @@ struct PrincipalCurvatures {
   glm::dvec3 direction1{1, 0, 0}, direction2{0, 1, 0};
 };
 
+class BSplineSurface;
+
 /// One face's surface in model coordinates (the body's placement is already applied), without any CAD-kernel type.
 /// Every member function is safe to call from many threads at once. Parameters outside the domain are evaluated by
 /// the surface's natural continuation (never an exception), so that Newton iterations may overshoot.
@@ -48,6 +50,9 @@ class ExactSurface {
 
   /// +1 where the face's outward normal is du x dv, -1 where it is dv x du.
   [[nodiscard]] virtual double orientation() const = 0;
+
+  /// The B-spline behind this surface, for evaluators that work on its coefficients; null for every other kind.
+  [[nodiscard]] virtual const BSplineSurface* as_bspline() const { return nullptr; }
 
   /// Unit normal, pointing out of the material where the face bounds a solid. At a degenerate point (pole of a sphere,
   /// apex of a patch) the limit from inside the domain.

@@ -36,9 +36,10 @@ class KernelSession {
 
   [[nodiscard]] const std::vector<std::string>& messages() const { return collector_->messages(); }
 
- private:
+  /// Sets one of the translators' static parameters until the session ends; unknown names are passed over.
   void set(const char* name, const char* value);
 
+ private:
   std::unique_lock<std::mutex> lock_;
   Handle(MessageCollector) collector_;
   Message_SequenceOfPrinters printers_;

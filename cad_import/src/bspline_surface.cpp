@@ -1,0 +1,224 @@
+#include "cad_import/bspline_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "cad_import/error.h"
+#include "cad_import/src/span_matrix.h"
+
+namespace catoptra::cad_import {
+namespace {
+
+void check(const BSplineData& d) {
+  const auto fail = [](const std::string& reason) { throw Error("", "B-spline surface", reason); };
+  for (const int degree : {d.degree_u, d.degree_v})
+    if (degree < 1 || degree > BSplineSurface::kMaxDegree) fail("degree " + std::to_string(degree));
+  if (d.pole_count_u <= d.degree_u || d.pole_count_v <= d.degree_v) fail("fewer poles than its degree needs");
+  const std::size_t count = std::size_t(d.pole_count_u) * d.pole_count_v;
+  if (d.poles.size() != count) fail("the number of poles is not rows times columns");
+  if (!d.weights.empty() && d.weights.size() != count) fail("not one weight per pole");
+  if (std::ranges::any_of(d.weights, [](double w) { return !(w > 0); })) fail("a weight is not positive");
+  if (d.knots_u.size() != std::size_t(d.pole_count_u + d.degree_u + 1) ||
+      d.knots_v.size() != std::size_t(d.pole_count_v + d.degree_v + 1))
+    fail("the number of knots is not poles + degree + 1");
+}
+
+}  // namespace
+
+SpanAxis::SpanAxis(std::span<const double> knots, int degree, double period) : period_(period) {
+  const int last = int(knots.size()) - degree - 1;
+  if (!std::ranges::is_sorted(knots)) throw Error("", "B-spline", "knots fall");
+  for (int k = degree; k < last; ++k) {
+    if (!(knots[k + 1] > knots[k])) continue;  // a multiple knot
+    breaks_.push_back(knots[k]);
+    first_pole_.push_back(k - degree);
+    middle_.push_back(0.5 * (knots[k] + knots[k + 1]));
+    rate_.push_back(2 / (knots[k + 1] - knots[k]));
+  }
+  if (breaks_.empty()) throw Error("", "B-spline", "its knots leave no span");
+  breaks_.push_back(knots[last]);
+
+  // Two buckets per span: even knots then need no step beyond the table.
+  const int buckets = std::max(1, 2 * span_count());
+  bucket_rate_ = buckets / (end() - begin());
+  int s = 0;
+  for (int b = 0; b < buckets; ++b) {
+    const double t = begin() + b / bucket_rate_;
+    while (s + 1 < span_count() && breaks_[s + 1] <= t) ++s;
+    bucket_.push_back(std::max(0, s - (breaks_[s] > t ? 1 : 0)));
+  }
+}
+
+SpanAxis::Position SpanAxis::locate(double t) const {
+  if (period_ > 0 && !(t >= begin() && t <= end())) t -= period_ * std::floor((t - begin()) / period_);
+  int s = 0;
+  if (t >= end())
+    s = span_count() - 1;
+  else if (t > begin()) {
+    s = bucket_[std::min(std::size_t((t - begin()) * bucket_rate_), bucket_.size() - 1)];
+    while (s > 0 && t < breaks_[s]) --s;
+    while (s + 1 < span_count() && t >= breaks_[s + 1]) ++s;
+  }
+  return {s, (t - middle_[s]) * rate_[s], rate_[s]};
+}
+
+BSplineSurface::BSplineSurface(const BSplineData& data, double orientation, SurfaceKind kind)
+    : kind_(kind),
+      degree_u_(data.degree_u),
+      degree_v_(data.degree_v),
+      rational_(!data.weights.empty()),
+      power_basis_(std::max(data.degree_u, data.degree_v) <= kMaxPowerDegree),
+      orientation_(orientation) {
+  check(data);
+  axis_u_ = SpanAxis(data.knots_u, degree_u_, data.period_u);
+  axis_v_ = SpanAxis(data.knots_v, degree_v_, data.period_v);
+  domain_ = {axis_u_.begin(), axis_u_.end(), axis_v_.begin(), axis_v_.end(), data.period_u, data.period_v};
+  build_blocks(data);
+}
+
+// block = E_u * (poles of the span) * E_v^T with one small matrix E per span and direction.
+void BSplineSurface::build_blocks(const BSplineData& data) {
+  for (const glm::dvec3& pole : data.poles) origin_ += pole / double(data.poles.size());
+  const auto matrices = [this](const SpanAxis& axis, std::span<const double> knots, int degree) {
+    std::vector<SpanMatrix> result;
+    for (int s = 0; s < axis.span_count(); ++s)
+      result.push_back(span_matrix(knots, degree, axis.first_pole(s), power_basis_));
+    return result;
+  };
+  const auto e_u = matrices(axis_u_, data.knots_u, degree_u_);
+  const auto e_v = matrices(axis_v_, data.knots_v, degree_v_);
+  const int nu = degree_u_ + 1, nv = degree_v_ + 1;
+  coefficients_.reserve(e_u.size() * e_v.size() * coefficients_per_span());
+  std::vector<glm::dvec4> half(coefficients_per_span());
+  for (std::size_t su = 0; su < e_u.size(); ++su)
+    for (std::size_t sv = 0; sv < e_v.size(); ++sv) {
+      for (int i = 0; i < nu; ++i)  // half = poles * E_v^T
+        for (int j = 0; j < nv; ++j) {
+          glm::dvec4 sum(0);
+          for (int m = 0; m < nv; ++m) {
+            const std::size_t at = std::size_t(axis_u_.first_pole(int(su)) + i) * data.pole_count_v +
+                                   axis_v_.first_pole(int(sv)) + m;
+            const glm::dvec3 pole = data.poles[at] - origin_;
+            sum += e_v[sv].at(j, m) *
+                   (rational_ ? glm::dvec4(data.weights[at] * pole, data.weights[at]) : glm::dvec4(pole, 0));
+          }
+          half[std::size_t(i) * nv + j] = sum;
+        }
+      for (int i = 0; i < nu; ++i)
+        for (int j = 0; j < nv; ++j) {
+          glm::dvec4 sum(0);
+          for (int m = 0; m < nu; ++m) sum += e_u[su].at(i, m) * half[std::size_t(m) * nv + j];
+          coefficients_.push_back(sum);
+        }
+    }
+}
+
+// Horner over v in every row, then over u across the rows; derivatives ride along.
+template <int Order>
+BSplineSurface::Homogeneous BSplineSurface::evaluate_power(const glm::dvec4* block, double x,
+                                                           double y) const {
+  Homogeneous h{};
+  const int nv = degree_v_ + 1;
+  for (int i = degree_u_; i >= 0; --i) {
+    const glm::dvec4* row = block + std::size_t(i) * nv;
+    glm::dvec4 c = row[degree_v_], cv(0), cvv(0);
+    for (int j = degree_v_ - 1; j >= 0; --j) {
+      if constexpr (Order >= 2) cvv = cvv * y + cv;  // half the second derivative
+      if constexpr (Order >= 1) cv = cv * y + c;
+      c = c * y + row[j];
+    }
+    if constexpr (Order >= 2) {
+      h.uu = h.uu * x + h.u;
+      h.uv = h.uv * x + h.v;
+      h.vv = h.vv * x + cvv;
+    }
+    if constexpr (Order >= 1) {
+      h.u = h.u * x + h.p;
+      h.v = h.v * x + cv;
+    }
+    h.p = h.p * x + c;
+  }
+  if constexpr (Order >= 2) {
+    h.uu *= 2;
+    h.vv *= 2;
+  }
+  return h;
+}
+
+template <int Order>
+BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(const glm::dvec4* block, double x,
+                                                            double y) const {
+  const BernsteinBasis bu(degree_u_, x), bv(degree_v_, y);
+  Homogeneous h{};
+  for (int i = 0; i <= degree_u_; ++i) {
+    glm::dvec4 c(0), cv(0), cvv(0);
+    for (int j = 0; j <= degree_v_; ++j) {
+      const glm::dvec4& b = block[std::size_t(i) * (degree_v_ + 1) + j];
+      c += bv.value[j] * b;
+      if constexpr (Order >= 1) cv += bv.first[j] * b;
+      if constexpr (Order >= 2) cvv += bv.second[j] * b;
+    }
+    h.p += bu.value[i] * c;
+    if constexpr (Order >= 1) {
+      h.u += bu.first[i] * c;
+      h.v += bu.value[i] * cv;
+    }
+    if constexpr (Order >= 2) {
+      h.uu += bu.second[i] * c;
+      h.uv += bu.first[i] * cv;
+      h.vv += bu.value[i] * cvv;
+    }
+  }
+  return h;
+}
+
+// Locates the span, evaluates, turns local derivatives into those by u and v, and divides by the weight
+// (Piegl and Tiller, eq. 4.20).
+template <int Order>
+BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
+  const SpanAxis::Position pu = axis_u_.locate(u), pv = axis_v_.locate(v);
+  const glm::dvec4* block = coefficients_.data() +
+                            (std::size_t(pu.span) * axis_v_.span_count() + pv.span) * coefficients_per_span();
+  Homogeneous h = power_basis_ ? evaluate_power<Order>(block, pu.local, pv.local)
+                               : evaluate_bezier<Order>(block, pu.local, pv.local);
+  if constexpr (Order >= 1) {
+    h.u *= pu.rate;
+    h.v *= pv.rate;
+  }
+  if constexpr (Order >= 2) {
+    h.uu *= pu.rate * pu.rate;
+    h.uv *= pu.rate * pv.rate;
+    h.vv *= pv.rate * pv.rate;
+  }
+  if (!rational_) return h;
+  const double inverse = 1 / h.p.w;
+  h.p *= inverse;
+  if constexpr (Order >= 1) {
+    const double wu = h.u.w, wv = h.v.w;
+    h.u = (h.u - wu * h.p) * inverse;
+    h.v = (h.v - wv * h.p) * inverse;
+    if constexpr (Order >= 2) {
+      h.uv = (h.uv - wu * h.v - wv * h.u - h.uv.w * h.p) * inverse;
+      h.uu = (h.uu - 2 * wu * h.u - h.uu.w * h.p) * inverse;
+      h.vv = (h.vv - 2 * wv * h.v - h.vv.w * h.p) * inverse;
+    }
+  }
+  return h;
+}
+
+glm::dvec3 BSplineSurface::point(double u, double v) const {
+  return origin_ + glm::dvec3(evaluate<0>(u, v).p);
+}
+
+SurfaceFrame BSplineSurface::d1(double u, double v) const {
+  const Homogeneous h = evaluate<1>(u, v);
+  return {origin_ + glm::dvec3(h.p), h.u, h.v};
+}
+
+SurfaceDerivatives BSplineSurface::d2(double u, double v) const {
+  const Homogeneous h = evaluate<2>(u, v);
+  return {origin_ + glm::dvec3(h.p), h.u, h.v, h.uu, h.uv, h.vv};
+}
+
+}  // namespace catoptra::cad_import
