@@ -1,8 +1,5 @@
-#include <cstdio>
+#include "app/command_line.h"
 
-#include "app/version.h"
-
-int main() {
-  std::printf("catoptra %s\n", catoptra::app::version().data());
-  return 0;
+int main(int argc, char** argv) {
+  return catoptra::app::run_command_line(argc, argv);
 }

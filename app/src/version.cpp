@@ -2,6 +2,8 @@
 
 namespace catoptra::app {
 
-std::string_view version() { return CATOPTRA_VERSION; }
+std::string_view version() {
+  return CATOPTRA_VERSION;
+}
 
 }  // namespace catoptra::app

@@ -1,0 +1,159 @@
+// catoptra bench SCENE
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/src/bench_ratios.h"
+#include "app/src/frame_timing.h"
+#include "app/src/output_file.h"
+#include "app/src/report.h"
+#include "app/src/session.h"
+
+namespace catoptra::app {
+namespace {
+
+struct BenchOptions {
+  DrawingOptions drawing;
+  std::vector<std::string> modes{"pvrr", "hybrid", "raytrace", "cubemap"};
+  int frames = 20;
+  bool json = false;
+};
+
+struct ModeTiming {
+  render::Mode mode;
+  FrameTiming timing;
+};
+
+using nlohmann::ordered_json;
+
+/// The tracer is the measure of every speed-up, so it always runs.
+std::vector<render::Mode> modes_with_reference(const BenchOptions& options) {
+  auto modes = parse_modes(options.modes);
+  if (std::find(modes.begin(), modes.end(), render::Mode::raytrace) == modes.end())
+    modes.push_back(render::Mode::raytrace);
+  return modes;
+}
+
+const FrameTiming* timing_of(const std::vector<ModeTiming>& timings, render::Mode mode) {
+  const auto found =
+      std::find_if(timings.begin(), timings.end(), [&](const ModeTiming& t) { return t.mode == mode; });
+  return found == timings.end() ? nullptr : &found->timing;
+}
+
+double pass(const FrameTiming& timing, const std::string& name) {
+  const auto found = timing.pass_ms.find(name);
+  return found == timing.pass_ms.end() ? 0 : found->second;
+}
+
+ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
+  return {{"frames", timing.frames},
+          {"frame_ms", {{"min", timing.min_ms}, {"median", timing.median_ms}, {"max", timing.max_ms}}},
+          {"rays_per_frame", timing.rays_per_frame},
+          {"speedup_vs_raytrace", raytrace_ms / timing.median_ms},
+          {"time_ms", timing.pass_ms}};
+}
+
+std::size_t triangle_count(const render::Scene& scene) {
+  std::size_t count = 0;
+  for (const auto& mesh : scene.surroundings) count += mesh.triangles.size();
+  for (const auto& optic : scene.optics) count += optic.mesh.triangles.size();
+  return count;
+}
+
+/// The ratios that do not follow from the frame times alone.
+void add_ratios(Session& session, const std::vector<ModeTiming>& timings, ordered_json& report) {
+  if (const FrameTiming* pvrr = timing_of(timings, render::Mode::pvrr)) {
+    const double passes = pass(*pvrr, "pass1") + pass(*pvrr, "pass2");
+    if (passes > 0) report["pvrr_over_raster_passes"] = pvrr->median_ms / passes;
+  }
+  const double bare_ms = session.renderer().bare_packet_ms(session.scene().camera, session.frame);
+  report["bare_packet_ms"] = bare_ms;
+  report["raytrace_over_bare_packets"] = timing_of(timings, render::Mode::raytrace)->median_ms / bare_ms;
+  if (session.scene().optics.empty()) return;
+  session.progress.show(-1, "timing commits of the ray scene");
+  const CommitTimes commits = time_commits(session.scene());
+  report["optic_commit_over_full_build"] = commits.optic_commit_ms / commits.full_build_ms;
+  report["ray_scene_ms"] = {{"full_build", commits.full_build_ms}, {"optic_commit", commits.optic_commit_ms}};
+  session.progress.show(-1, "timing tessellation");
+  const MeshingTimes meshing = time_meshing(session.file);
+  report["tessellate_over_brepmesh"] = meshing.kernel_ms / meshing.tessellate_ms;
+  report["tessellation"] = {{"chord_mm", session.scene().settings.chord_mm},
+                            {"tessellate_ms", meshing.tessellate_ms},
+                            {"tessellate_triangles", meshing.tessellate_triangles},
+                            {"brepmesh_ms", meshing.kernel_ms},
+                            {"brepmesh_triangles", meshing.kernel_triangles}};
+  session.progress.clear();
+}
+
+void print_ratio(const ordered_json& report, const char* key, const char* meaning) {
+  if (report.contains(key)) std::printf("%-30s %10.4g  %s\n", key, report[key].get<double>(), meaning);
+}
+
+void print_table(const ordered_json& report) {
+  std::printf("%s: %d x %d, %zu triangles\n", report["scene"].get<std::string>().c_str(),
+              report["resolution"][0].get<int>(), report["resolution"][1].get<int>(),
+              report["triangles"].get<std::size_t>());
+  std::printf("%-9s %7s %9s %9s %9s %11s %8s  %s\n", "mode", "frames", "min ms", "median", "max", "rays",
+              "speed-up", "passes (median ms)");
+  for (const auto& [name, mode] : report["modes"].items()) {
+    const auto& frame = mode["frame_ms"];
+    std::printf("%-9s %7d %9.2f %9.2f %9.2f %11zu %8.2f ", name.c_str(), mode["frames"].get<int>(),
+                frame["min"].get<double>(), frame["median"].get<double>(), frame["max"].get<double>(),
+                mode["rays_per_frame"].get<std::size_t>(), mode["speedup_vs_raytrace"].get<double>());
+    for (const auto& [pass_name, ms] : mode["time_ms"].items())
+      std::printf(" %s %.3g", pass_name.c_str(), ms.get<double>());
+    std::printf("\n");
+  }
+  print_ratio(report, "pvrr_over_raster_passes", "pvrr frame / its own two raster passes");
+  print_ratio(report, "raytrace_over_bare_packets", "raytrace frame / bare ray packets for the same rays");
+  print_ratio(report, "optic_commit_over_full_build", "moving an optic / building the ray scene");
+  print_ratio(report, "tessellate_over_brepmesh", "times faster than the CAD kernel's mesher");
+}
+
+int run_bench(const BenchOptions& options, const CommonOptions& common) {
+  const auto modes = modes_with_reference(options);
+  Session session(options.drawing, common);
+  render::FrameOptions frame_options = session.frame;
+  frame_options.read_back = false;
+  std::vector<ModeTiming> timings;
+  for (const render::Mode mode : modes)
+    timings.push_back({mode, time_frames(session.renderer(), mode, session.scene().camera, frame_options,
+                                         options.frames, session.progress)});
+
+  const double raytrace_ms = timing_of(timings, render::Mode::raytrace)->median_ms;
+  ordered_json by_mode = ordered_json::object();
+  for (const ModeTiming& t : timings)
+    by_mode[std::string(render::mode_name(t.mode))] = mode_json(t.timing, raytrace_ms);
+  ordered_json report{{"scene", session.scene().file},
+                      {"resolution", {session.frame.width, session.frame.height}},
+                      {"triangles", triangle_count(session.scene())},
+                      {"frames", options.frames},
+                      {"modes", by_mode}};
+  add_ratios(session, timings, report);
+  report["versions"] = versions_json();
+  if (options.json)
+    write_text("-", json_text(report));
+  else
+    print_table(report);
+  if (std::fflush(stdout) != 0) throw Error("standard output", "", "cannot be written");
+  return kExitDone;
+}
+
+}  // namespace
+
+Command add_bench_command(CLI::App& root, CommonOptions& common) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* app = add_subcommand(root, common, "bench",
+                                 "Time the modes on the same scene, with the same shading, in one run");
+  add_drawing_options(*app, options->drawing);
+  app->add_option("--modes", options->modes, "Modes to time (default all; raytrace always runs)")
+      ->delimiter(',')
+      ->option_text("MODE,...");
+  app->add_option("--frames", options->frames, "Frames per mode, after one to warm up (default 20)")
+      ->check(CLI::Range(1, 1000000))
+      ->option_text("N");
+  app->add_flag("--json", options->json, "Print JSON");
+  return {app, [options, &common] { return run_bench(*options, common); }};
+}
+
+}  // namespace catoptra::app

@@ -1,0 +1,80 @@
+#include "app/src/report.h"
+
+#include <spdlog/version.h>
+#include <toml++/toml.h>
+
+#include <CLI/Version.hpp>
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
+#include "app/version.h"
+
+namespace catoptra::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json patches_json(const std::vector<render::PatchStats>& patches) {
+  ordered_json result = ordered_json::array();
+  for (const render::PatchStats& patch : patches)
+    result.push_back({{"viewpoint_mm", {patch.viewpoint_mm.x, patch.viewpoint_mm.y, patch.viewpoint_mm.z}},
+                      {"residual_mm", patch.residual_mm},
+                      {"fov_deg", {glm::degrees(patch.fov_rad[0]), glm::degrees(patch.fov_rad[1])}}});
+  return result;
+}
+
+template <typename Part>
+std::string dotted(Part major, Part minor, Part patch) {
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+}  // namespace
+
+ordered_json quantiles_json(const render::ErrorQuantiles& q) {
+  return {{"median", q.median}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.max}};
+}
+
+ordered_json optics_json(render::Mode mode, const render::FrameStats& stats,
+                         const std::vector<render::OpticError>* errors) {
+  const bool exact = mode == render::Mode::hybrid || mode == render::Mode::raytrace;
+  ordered_json optics = ordered_json::array();
+  for (std::size_t i = 0; i < stats.optics.size(); ++i) {
+    const render::OpticStats& optic = stats.optics[i];
+    ordered_json entry{{"name", optic.name}, {"kind", optic.kind}};
+    if (errors) entry["pixels"] = (*errors)[i].pixels;
+    entry["vertices"] = optic.vertices;
+    entry["rays"] = optic.rays;
+    entry["patches"] = patches_json(optic.patches);
+    if (errors) {
+      entry["outline_pixels"] = (*errors)[i].outline_pixels;
+      entry["error_arcmin"] = quantiles_json((*errors)[i].arcmin);
+      entry["error_px"] = quantiles_json((*errors)[i].screen_px);
+    }
+    entry["retraced_fraction"] = exact ? 1.0 : 0.0;
+    optics.push_back(std::move(entry));
+  }
+  return optics;
+}
+
+ordered_json image_json(const render::ImageError& image) {
+  return {{"psnr_db", std::min(image.psnr_db, kIdenticalPsnr_db)},
+          {"psnr_linear_db", std::min(image.psnr_linear_db, kIdenticalPsnr_db)},
+          {"flip_mean", image.flip_mean}};
+}
+
+ordered_json versions_json() {
+  return {{"catoptra", version()},
+          {"compiler", __VERSION__},
+          {"cli11", CLI11_VERSION},
+          {"tomlplusplus", dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
+          {"nlohmann_json",
+           dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
+          {"spdlog", dotted(SPDLOG_VER_MAJOR, SPDLOG_VER_MINOR, SPDLOG_VER_PATCH)}};
+}
+
+std::string json_text(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace catoptra::app

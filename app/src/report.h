@@ -1,0 +1,32 @@
+// The JSON that `render`, `compare` and `bench` write; docs/reports.md describes every field.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "render/comparison.h"
+#include "render/frame.h"
+#include "render/renderer.h"
+
+namespace catoptra::app {
+
+/// Stands for the infinite PSNR of two identical pictures, which JSON cannot hold.
+inline constexpr double kIdenticalPsnr_db = 200;
+
+[[nodiscard]] nlohmann::ordered_json quantiles_json(const render::ErrorQuantiles& quantiles);
+
+/// One entry per optic of the frame; `errors` adds pixels and errors and may be null. `mode` tells which
+/// share of the optic's pixels is traced exactly.
+[[nodiscard]] nlohmann::ordered_json optics_json(render::Mode mode, const render::FrameStats& stats,
+                                                 const std::vector<render::OpticError>* errors);
+
+[[nodiscard]] nlohmann::ordered_json image_json(const render::ImageError& image);
+
+/// What was used: Catoptra's version, the compiler and the libraries of this folder.
+[[nodiscard]] nlohmann::ordered_json versions_json();
+
+/// Indented text with a newline at the end; bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
+
+}  // namespace catoptra::app

@@ -1,0 +1,86 @@
+#include "app/scene_file.h"
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "app/src/scene_context.h"
+#include "cad_import/error.h"
+#include "cad_import/import.h"
+
+namespace catoptra::app {
+namespace {
+
+toml::table parse(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, std::string_view(name));
+  } catch (const toml::parse_error& error) {
+    throw Error(name, "line " + std::to_string(error.source().begin.line), std::string(error.description()),
+                "the file is not valid TOML");
+  }
+}
+
+double read_unit_mm(const TomlTable& root) {
+  const auto unit = root.text("units");
+  if (!unit) return 1;
+  const auto mm = cad_import::unit_in_mm(*unit);
+  if (!mm) root.fail("units", "unknown unit '" + *unit + "'", "known: mm, cm, m, in");
+  return *mm;
+}
+
+/// Lenses and planar optics are part of the format but not of this version: refused, not left out of the
+/// picture.
+void refuse_what_cannot_be_shown(const TomlTable& root, const SceneContext& context) {
+  for (const std::string& entity : {check_lenses(root, context), check_planars(root, context)})
+    if (!entity.empty())
+      throw Error(context.name, entity, "this version of Catoptra does not render lenses and planar optics",
+                  "remove the table, or use a [[mirror]] from a flat face");
+}
+
+std::string read_all(std::istream& stream) {
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+SceneFile read_scene_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                          const SceneReadOptions& options) {
+  const toml::table parsed = parse(text, name);
+  const TomlTable root(
+      parsed, name, "",
+      {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar", "render"});
+  const SceneContext context{name, folder, read_unit_mm(root), options};
+
+  SceneFile result;
+  render::Scene& scene = result.scene;
+  scene.file = name;
+  scene.camera = read_camera(root, context);
+  scene.environment = read_environment(root, context);
+  scene.lights = read_lights(root, context);
+  scene.settings = read_render_settings(root, scene.warnings);
+  refuse_what_cannot_be_shown(root, context);
+  for (const render::Light& light : scene.lights)
+    if (light.shadows) {
+      scene.warnings.push_back("this version renders no shadows: [[light]] shadows = true has no effect");
+      break;
+    }
+  read_surroundings(root, context, result);
+  read_mirrors(root, context, result);
+  return result;
+}
+
+SceneFile read_scene(const std::filesystem::path& file, const SceneReadOptions& options) {
+  if (file == "-")
+    return read_scene_text(read_all(std::cin), "standard input", std::filesystem::current_path(), options);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error(file.string(), "", "is a folder, not a scene file", "name the .toml file in it");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    throw Error(file.string(), "", "cannot open the scene file", "does it exist and may you read it?");
+  return read_scene_text(read_all(stream), file.string(), std::filesystem::absolute(file).parent_path(),
+                         options);
+}
+
+}  // namespace catoptra::app
