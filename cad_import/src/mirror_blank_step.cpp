@@ -62,9 +62,8 @@ Handle(TDocStd_Document) document_of(const MirrorSolid& mirror) {
 
 void write_step(const MirrorSolid& mirror, const std::filesystem::path& file, const std::string& title) {
   KernelSession session;
-  STEPCAFControl_Controller::Init();
-  session.set("write.step.unit", "MM");
-  session.set("write.stepcaf.subshapes.name", 1);
+  STEPCAFControl_Controller::Init();  // defines the parameter that follows
+  session.set("write.stepcaf.subshapes.name", "1");
   const Handle(TDocStd_Document) document = document_of(mirror);
   STEPCAFControl_Writer writer;
   const bool transferred = writer.Transfer(document);
