@@ -1,7 +1,10 @@
-# Front door: set-up, build, demo, tests. See README.md.
-BUILD ?= build
+# Front door. README.md says what each target leaves where.
+.PHONY: help setup build demo test
 
-.PHONY: setup build demo test
+help:
+	@echo "make demo   install what is missing, build, render the main example into out/"
+	@echo "make build  install what is missing, build a release into build/"
+	@echo "make test   the same, then every test (CATOPTRA_CORPUS=folder adds the tests on real CAD files)"
 
 setup:
 	@scripts/setup.sh
@@ -10,5 +13,8 @@ build: setup
 	@cmake --preset release
 	@cmake --build --preset release
 
+demo: build
+	@scripts/demo.sh
+
 test: build
-	@ctest --preset release
+	@scripts/test.sh

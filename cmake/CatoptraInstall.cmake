@@ -1,1 +1,36 @@
-# Install, export and packages.
+# Install, export and packages: libraries with their headers, the command line with man page and completions, the examples.
+include(CMakePackageConfigHelpers)
+
+set(catoptra_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/catoptra)
+foreach(folder cad_import tessellate optics render app)
+  install(TARGETS catoptra_${folder} EXPORT catoptraTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/catoptra)
+endforeach()
+install(EXPORT catoptraTargets NAMESPACE catoptra:: DESTINATION ${catoptra_package_dir})
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/catoptraConfig.cmake.in ${PROJECT_BINARY_DIR}/catoptraConfig.cmake
+                              INSTALL_DESTINATION ${catoptra_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/catoptraConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/catoptraConfig.cmake ${PROJECT_BINARY_DIR}/catoptraConfigVersion.cmake
+        DESTINATION ${catoptra_package_dir})
+
+install(TARGETS catoptra RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catoptra/examples
+        FILES_MATCHING PATTERN "*.toml" PATTERN "*.glb" PATTERN "*.step"
+        PATTERN CMakeFiles EXCLUDE PATTERN programs EXCLUDE)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME catoptra)
+set(CPACK_PACKAGE_CONTACT "Catoptra maintainers <maintainers@catoptra.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# A software OpenGL is found at run time, so that no linked library names it.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libgl1-mesa-dri, libegl1")
+set(CPACK_SOURCE_IGNORE_FILES "/\\\\.git/;/build.*/;/out/")
+include(CPack)

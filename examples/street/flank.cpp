@@ -94,14 +94,14 @@ Model make_cabin() {
   }
   add_box(cabin, "upholstery", {kLeft, -1.40f, 0.60f}, {kRight, -1.20f, 1.00f});
   // The rear window's frame leans forward; its opening is what the interior mirror looks through.
-  const float low = 1.00f, high = 1.36f, y_low = -1.95f, y_high = -1.60f;
+  const float low = 1.02f, high = 1.41f, y_low = -1.95f, y_high = -1.60f;
   const auto frame = [&](float x0, float x1, float z0, float z1) {
     const auto y = [&](float z) { return y_low + (z - low) / (high - low) * (y_high - y_low); };
     add_quad(cabin, "trim", {x1, y(z0), z0}, {x0, y(z0), z0}, {x0, y(z1), z1}, {x1, y(z1), z1});
   };
-  frame(kLeft - 0.2f, kLeft, 0.80f, 1.45f);
-  frame(kRight, kRight + 0.2f, 0.80f, 1.45f);
-  frame(kLeft, kRight, high, 1.45f);
+  frame(kLeft - 0.2f, kLeft, 0.80f, 1.47f);
+  frame(kRight, kRight + 0.2f, 0.80f, 1.47f);
+  frame(kLeft, kRight, high, 1.47f);
   frame(kLeft, kRight, 0.80f, low);
   add_quad(cabin, "upholstery", {kLeft, 0.3f, 1.44f}, {kRight, 0.3f, 1.44f}, {kRight, -1.6f, 1.42f},
            {kLeft, -1.6f, 1.42f});

@@ -134,4 +134,14 @@ Model make_clock_tower() {
   return tower;
 }
 
+Model make_wall() {
+  Model wall;
+  const glm::vec3 left(4, 0, -3), right(-4, 0, -3), up(0, 0, 6);
+  add_tiled_quad(wall, "bricks", left, right, right + up, left + up, 1);
+  add_disc(wall, "clock", {0.75f, 0.01f, 0.15f}, {0, 1, 0}, 0.5f, 32);
+  add_panel(wall, "direction sign", {-0.6f, 0.01f, 0.2f}, 0, {1.4f, 0.7f});
+  add_panel(wall, "notice", {0, 0.01f, -0.65f}, 0, {1.6f, 0.4f});
+  return wall;
+}
+
 }  // namespace catoptra::examples

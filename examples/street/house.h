@@ -25,4 +25,8 @@ struct HouseDesign {
 /// A tower of 3.6 m square and 9 m with a clock on its front and a notice board below; placed like a house.
 [[nodiscard]] Model make_clock_tower();
 
+/// A brick wall in the plane y = 0 that looks towards +y, 8 m wide and 6 m high around the origin, with a
+/// clock and boards to read.
+[[nodiscard]] Model make_wall();
+
 }  // namespace catoptra::examples

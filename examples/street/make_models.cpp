@@ -1,10 +1,12 @@
-// Writes the examples' models: street.glb, flank.glb, cabin.glb, housing.glb and sky.hdr into a folder.
+// Writes the models of the examples as .glb files into a folder: the street, the car around the driver, a
+// wall.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
 #include "examples/street/flank.h"
 #include "examples/street/glb.h"
+#include "examples/street/house.h"
 #include "examples/street/palette.h"
 #include "examples/street/street.h"
 
@@ -35,6 +37,8 @@ int main(int argc, char** argv) try {
   write(folder / "flank.glb", make_flank(), palette);
   write(folder / "cabin.glb", make_cabin(), palette);
   write(folder / "housing.glb", make_housing(0.170f, 0.110f, 1.2f), palette);
+  write(folder / "interior_housing.glb", make_housing(0.240f, 0.062f, 1e6f), palette);
+  write(folder / "wall.glb", make_wall(), palette);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "make_models: " << error.what() << '\n';

@@ -87,7 +87,7 @@ void add_houses(Model& street) {
 
 void add_cars(Model& street) {
   street.add(make_car({CarShape::hatchback, "car yellow", 0}),
-             place({-2.95f, -9.5f, 0}, 180));                                         // has just passed
+             place({-2.95f, -12.0f, 0}, 180));                                        // has just passed
   street.add(make_car({CarShape::saloon, "car red", 1}), place({0.30f, -15.0f, 0}));  // follows
   street.add(make_car({CarShape::van, "car white", 2}),
              place({-3.55f, -33.0f, 0}, 180));  // parked on the left
@@ -96,14 +96,14 @@ void add_cars(Model& street) {
 }
 
 void add_furniture(Model& street) {
-  for (const float y : {-12.0f, -34.0f, -56.0f, 12.0f})
+  for (const float y : {-27.5f, -50.0f, 12.0f})
     street.add(make_lamp_post(), place({kLeftKerb - 0.5f, y, kKerbHeight}, 180));
   for (const float y : {-22.0f, -44.0f})
     street.add(make_lamp_post(), place({kRightKerb + 0.5f, y, kKerbHeight}));
 
   // All signs face +y: towards a driver who looks back.
-  street.add(make_board("direction sign", 2.5f, 1.25f, 2.75f), place({-5.9f, -16.5f, kKerbHeight}));
-  street.add(make_sign("stop sign", 0.9f, 0.9f, 2.9f), place({kLeftKerb - 0.55f, -21.0f, kKerbHeight}));
+  street.add(make_board("direction sign", 2.5f, 1.25f, 2.75f), place({-5.75f, -17.5f, kKerbHeight}));
+  street.add(make_sign("stop sign", 0.9f, 0.9f, 2.9f), place({kLeftKerb - 0.35f, -23.0f, kKerbHeight}));
   street.add(make_sign("speed limit", 0.75f, 0.75f, 2.8f), place({kRightKerb + 0.6f, -19.0f, kKerbHeight}));
   street.add(make_sign("street name", 1.6f, 0.3f, 2.5f), place({kLeftKerb - 0.7f, 7.5f, kKerbHeight}, -50));
 
