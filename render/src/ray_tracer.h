@@ -23,11 +23,20 @@ class RayTracer {
   /// Every pixel: mode `raytrace`.
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options) const;
 
-  /// Mode `hybrid`: traces only the pixels listed (index = row * width + column), which are expected to show an optic,
-  /// and writes their colour (and geometry where asked) into `frame`, which has the options' size. A listed pixel whose
-  /// primary ray meets no optic gets what the ray meets. Returns the number of rays traced.
-  std::size_t trace_pixels(const Camera& camera, const FrameOptions& options, std::span<const std::uint32_t> pixels,
-                           Frame& frame) const;
+  /// Mode `hybrid`: traces only the pixels listed (index = row * width + column), which are expected to show
+  /// an optic, and writes their colour (and geometry where asked) into `frame`, which has the options' size.
+  /// A listed pixel whose primary ray meets no optic gets what the ray meets. Returns the number of rays
+  /// traced.
+  std::size_t trace_pixels(const Camera& camera, const FrameOptions& options,
+                           std::span<const std::uint32_t> pixels, Frame& frame) const;
+
+  /// Tells that the mesh of optic `index` has changed (the ray scene is updated by its owner).
+  void optic_changed(std::size_t index);
+
+  /// Time in ms of nothing but the packet queries of such a frame, on the same threads: primary rays
+  /// generated and queried, and the reflected rays, computed beforehand, loaded and queried. The yardstick of
+  /// the ray tracer's speed.
+  [[nodiscard]] double bare_packet_ms(const Camera& camera, const FrameOptions& options) const;
 
  private:
   struct Impl;

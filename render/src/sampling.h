@@ -1,17 +1,53 @@
-// Where in a pixel its samples lie: the same places in every mode.
+// Where in a pixel its samples lie, and the ray through each: the same in every mode.
 #pragma once
 
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "render/scene.h"
 
 namespace catoptra::render {
 
-/// Offset of sample `index` from the pixel's centre, in pixels, within (-0.5, 0.5). Sample 0 of a single-sample frame is
-/// the centre; with more samples the R2 sequence is used (M. Roberts 2018, generalised golden ratio).
+/// Offset of sample `index` from the pixel's centre, in pixels (+x right, +y down), within [-0.5, 0.5).
+/// Sample 0 is the centre; further samples follow the R2 sequence (M. Roberts 2018, generalised golden
+/// ratio).
 [[nodiscard]] inline glm::dvec2 sample_offset(int index, int samples) {
   if (samples <= 1) return {0, 0};
   const double a1 = 0.7548776662466927, a2 = 0.5698402909980532;
   const double x = 0.5 + a1 * index, y = 0.5 + a2 * index;
   return {x - static_cast<long>(x) - 0.5, y - static_cast<long>(y) - 0.5};
+}
+
+/// The rays of a pinhole camera. `corner` + column * `dx` + row * `dy` is the direction through the centre of
+/// pixel (column, row), scaled so that its component along `forward` is 1; fractions of pixels are allowed.
+struct CameraRays {
+  glm::dvec3 eye_mm, forward, corner, dx, dy;
+  double pixel = 0;  ///< side of a pixel at unit distance along `forward`
+
+  [[nodiscard]] glm::dvec3 direction(double column, double row) const {
+    return corner + column * dx + row * dy;
+  }
+};
+
+/// Columns run to the right, rows down. An `up` along the view direction is replaced by some other one.
+[[nodiscard]] inline CameraRays camera_rays(const Camera& camera, int width, int height) {
+  CameraRays rays;
+  rays.eye_mm = camera.eye_mm;
+  const glm::dvec3 view = camera.target_mm - camera.eye_mm;
+  rays.forward = glm::length(view) > 0 ? glm::normalize(view) : glm::dvec3(0, 1, 0);
+  glm::dvec3 right = glm::cross(rays.forward, camera.up);
+  if (glm::length(right) <= 1e-12 * glm::length(camera.up))
+    right =
+        glm::cross(rays.forward, std::abs(rays.forward.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
+  right = glm::normalize(right);
+  const glm::dvec3 up = glm::cross(right, rays.forward);
+  rays.pixel = 2 * std::tan(0.5 * camera.fov_rad) / height;
+  rays.dx = rays.pixel * right;
+  rays.dy = -rays.pixel * up;
+  rays.corner = rays.forward - 0.5 * (width - 1) * rays.dx - 0.5 * (height - 1) * rays.dy;
+  return rays;
 }
 
 }  // namespace catoptra::render

@@ -1,0 +1,169 @@
+#include "render/src/ray_tracer.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "render/src/ray_tracer_packet.h"
+
+namespace catoptra::render {
+namespace {
+
+constexpr int kTile = 4;  // pixels a side: one packet
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Runs `work` in an arena of `threads` threads; 0: all of them.
+template <typename Work>
+void with_threads(std::size_t threads, const Work& work) {
+  if (threads == 0) {
+    work();
+    return;
+  }
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute(work);
+}
+
+/// The pixels of tile (tile_x, tile_y), row by row; lanes outside the picture are inactive.
+PixelPacket tile_pixels(int tile_x, int tile_y, int width, int height) {
+  PixelPacket pixels;
+  for (int i = 0; i < PixelPacket::kLanes; ++i) {
+    pixels.column[i] = tile_x * kTile + i % kTile;
+    pixels.row[i] = tile_y * kTile + i / kTile;
+    pixels.active[i] = pixels.column[i] < width && pixels.row[i] < height;
+  }
+  return pixels;
+}
+
+/// Pixel numbers in the order of the tiles that hold them, so that 16 in a row make a coherent packet.
+std::vector<std::uint32_t> by_tiles(std::span<const std::uint32_t> pixels, int width, int height) {
+  const std::size_t across = std::size_t(width + kTile - 1) / kTile,
+                    down = std::size_t(height + kTile - 1) / kTile;
+  const auto tile_of = [&](std::uint32_t pixel) {
+    return std::size_t(pixel) / std::size_t(width) / kTile * across +
+           std::size_t(pixel) % std::size_t(width) / kTile;
+  };
+  std::vector<std::uint32_t> next(across * down + 1, 0), sorted(pixels.size());
+  for (const std::uint32_t pixel : pixels) ++next[tile_of(pixel) + 1];
+  for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
+  for (const std::uint32_t pixel : pixels) sorted[next[tile_of(pixel)]++] = pixel;
+  return sorted;
+}
+
+void allocate(Frame& frame, const FrameOptions& options) {
+  frame.width = options.width;
+  frame.height = options.height;
+  const std::size_t count = std::size_t(options.width) * std::size_t(options.height);
+  frame.color.resize(count);
+  if (!options.geometry) return;
+  frame.position.resize(count);
+  frame.surface.resize(count);
+  frame.direction.resize(count);
+  frame.optic_id.resize(count);
+}
+
+}  // namespace
+
+struct RayTracer::Impl {
+  PacketTracer packets;
+
+  /// Traces tiles of rows [first, last) of tiles; adds up the rays.
+  std::size_t trace_tile_rows(const CameraRays& camera, const FrameOptions& options, int first, int last,
+                              Frame& frame) const {
+    const int across = (options.width + kTile - 1) / kTile;
+    std::size_t rays = 0;
+    for (int y = first; y < last; ++y)
+      for (int x = 0; x < across; ++x)
+        rays += packets.trace(camera, options, tile_pixels(x, y, options.width, options.height), frame);
+    return rays;
+  }
+};
+
+RayTracer::RayTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
+    : impl_(new Impl{PacketTracer(scene, textures, rays)}) {}
+RayTracer::~RayTracer() = default;
+
+void RayTracer::optic_changed(std::size_t index) {
+  impl_->packets.optic_changed(index);
+}
+
+RenderResult RayTracer::render(const Camera& camera, const FrameOptions& options) const {
+  const auto start = Clock::now();
+  RenderResult result;
+  allocate(result.frame, options);
+  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const int rows = (options.height + kTile - 1) / kTile;
+  std::atomic<std::size_t> count{0};
+  with_threads(options.threads, [&] {
+    tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
+      count += impl_->trace_tile_rows(rays, options, range.begin(), range.end(), result.frame);
+    });
+  });
+  result.stats.rays = count;
+  result.stats.time_ms["trace"] = result.stats.time_ms["total"] = ms_since(start);
+  return result;
+}
+
+std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& options,
+                                    std::span<const std::uint32_t> pixels, Frame& frame) const {
+  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const std::vector<std::uint32_t> sorted = by_tiles(pixels, options.width, options.height);
+  constexpr std::size_t lanes = PixelPacket::kLanes;
+  const std::size_t packet_count = (sorted.size() + lanes - 1) / lanes;
+  std::atomic<std::size_t> count{0};
+  with_threads(options.threads, [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packet_count, 64), [&](const auto& range) {
+      std::size_t traced = 0;
+      for (std::size_t p = range.begin(); p != range.end(); ++p) {
+        PixelPacket packet;
+        for (std::size_t i = 0; i < lanes; ++i) {
+          const std::size_t k = p * lanes + i;
+          packet.active[i] = k < sorted.size();
+          const int pixel = int(sorted[std::min(k, sorted.size() - 1)]);
+          packet.column[i] = pixel % options.width;
+          packet.row[i] = pixel / options.width;
+        }
+        traced += impl_->packets.trace(rays, options, packet, frame);
+      }
+      count += traced;
+    });
+  });
+  return count;
+}
+
+double RayTracer::bare_packet_ms(const Camera& camera, const FrameOptions& options) const {
+  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const int across = (options.width + kTile - 1) / kTile, rows = (options.height + kTile - 1) / kTile;
+  std::vector<std::vector<ReflectedPacket>> reflected(static_cast<std::size_t>(rows));
+  double ms = 0;
+  with_threads(options.threads, [&] {
+    tbb::parallel_for(0, rows, [&](int y) {
+      for (int x = 0; x < across; ++x)
+        if (const auto packet =
+                impl_->packets.reflect_only(rays, tile_pixels(x, y, options.width, options.height)))
+          reflected[std::size_t(y)].push_back(*packet);
+    });
+    const auto start = Clock::now();
+    tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
+      for (int y = range.begin(); y != range.end(); ++y) {
+        for (int x = 0; x < across; ++x)
+          impl_->packets.query_primary(rays, tile_pixels(x, y, options.width, options.height));
+        for (const ReflectedPacket& packet : reflected[std::size_t(y)])
+          impl_->packets.query_reflected(packet);
+      }
+    });
+    ms = ms_since(start);
+  });
+  return ms;
+}
+
+}  // namespace catoptra::render

@@ -1,0 +1,270 @@
+#include "render/src/ray_tracer_packet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace catoptra::render {
+namespace {
+
+constexpr int kLanes = PixelPacket::kLanes;
+static_assert(kLanes == ShadeLanes::kLanes && kLanes == MirrorLanes::kLanes);
+
+constexpr int kMaxOwnHits = 8;  // times a reflected ray may pass through the optic it comes from
+
+}  // namespace
+
+/// All that is known of 16 pixels on their way.
+struct alignas(64) PacketTracer::Packet {
+  optics::RayPacket16
+      first;  ///< from the eye; directions have length 1 along the camera's axis, so t_max is a depth
+  optics::RayPacket16 second;  ///< reflected; unit directions
+  MirrorLanes mirror;
+  ShadeLanes shade;
+  double column[kLanes], row[kLanes];  ///< with the sample's offset
+  double stretch[kLanes];              ///< length of the first direction, of mirror lanes
+  int optic[kLanes];                   ///< whose reflecting side the pixel shows; -1: none
+  bool any_mirror;
+};
+
+PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
+    : scene_(scene), rays_(rays), shading_(scene, textures) {
+  for (const optics::Optic& optic : scene.optics) mirrors_.push_back(std::make_unique<ExactMirror>(optic));
+}
+
+void PacketTracer::optic_changed(std::size_t index) {
+  shading_.optic_changed(index);
+  mirrors_[index] = std::make_unique<ExactMirror>(scene_.optics[index]);
+}
+
+void PacketTracer::primary(const CameraRays& camera, const PixelPacket& pixels, glm::dvec2 offset,
+                           Packet& p) const {
+  const glm::vec3 corner(camera.corner + offset.x * camera.dx + offset.y * camera.dy), dx(camera.dx),
+      dy(camera.dy);
+  const glm::vec3 eye(camera.eye_mm);
+  for (int i = 0; i < kLanes; ++i) {
+    const auto column = float(pixels.column[i]), row = float(pixels.row[i]);
+    p.first.origin_x[i] = eye.x;
+    p.first.origin_y[i] = eye.y;
+    p.first.origin_z[i] = eye.z;
+    p.first.direction_x[i] = corner.x + column * dx.x + row * dy.x;
+    p.first.direction_y[i] = corner.y + column * dx.y + row * dy.y;
+    p.first.direction_z[i] = corner.z + column * dx.z + row * dy.z;
+    p.first.t_min[i] = 0;
+    p.first.t_max[i] = pixels.active[i] ? std::numeric_limits<float>::infinity() : -1.0f;
+    p.column[i] = pixels.column[i] + offset.x;
+    p.row[i] = pixels.row[i] + offset.y;
+  }
+  rays_.intersect16(p.first, optics::kEverything, true);
+}
+
+/// Finds the lanes that show a reflecting side; hits and reflects them exactly, and queries the reflected
+/// rays.
+void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
+  p.any_mirror = false;
+  for (int i = 0; i < kLanes; ++i) {
+    p.optic[i] = -1;
+    const std::uint32_t object = p.first.object[i];
+    if (object == optics::kNoHit || object < first_optic) continue;
+    const float facing = p.first.normal_x[i] * p.first.direction_x[i] +
+                         p.first.normal_y[i] * p.first.direction_y[i] +
+                         p.first.normal_z[i] * p.first.direction_z[i];
+    const int optic = int(object - first_optic);
+    if ((facing < 0) == scene_.optics[std::size_t(optic)].flip) continue;
+    p.optic[i] = optic;
+    p.any_mirror = true;
+    const glm::dvec3 d = camera.direction(p.column[i], p.row[i]);
+    p.stretch[i] = glm::length(d);
+    p.mirror.direction_x[i] = d.x / p.stretch[i];
+    p.mirror.direction_y[i] = d.y / p.stretch[i];
+    p.mirror.direction_z[i] = d.z / p.stretch[i];
+    p.mirror.triangle[i] = p.first.triangle[i];
+    p.mirror.u[i] = p.first.u[i];
+    p.mirror.v[i] = p.first.v[i];
+  }
+  if (!p.any_mirror) return;
+  for (std::size_t optic = 0; optic < mirrors_.size(); ++optic) {
+    bool any = false;
+    for (int i = 0; i < kLanes; ++i) any |= p.mirror.active[i] = p.optic[i] == int(optic);
+    if (any) mirrors_[optic]->reflect(camera.eye_mm, p.mirror);
+  }
+  load_reflected(p);
+  if (scene_.optics.size() > 1)
+    query_skipping_own_optic(p);
+  else
+    rays_.intersect16(p.second, optics::kSurroundings, true);
+}
+
+void PacketTracer::load_reflected(Packet& p) const {
+  // Lanes that show no mirror repeat one that does: their values are never looked at, but must be ordinary
+  // numbers.
+  int any = 0;
+  while (p.optic[any] < 0) ++any;
+  for (int i = 0; i < kLanes; ++i) {
+    const int from = p.optic[i] >= 0 ? i : any;
+    p.second.origin_x[i] = float(p.mirror.surface_x[from]);
+    p.second.origin_y[i] = float(p.mirror.surface_y[from]);
+    p.second.origin_z[i] = float(p.mirror.surface_z[from]);
+    p.second.direction_x[i] = float(p.mirror.reflected_x[from]);
+    p.second.direction_y[i] = float(p.mirror.reflected_y[from]);
+    p.second.direction_z[i] = float(p.mirror.reflected_z[from]);
+    p.second.t_min[i] = 0;
+    p.second.t_max[i] = p.optic[i] >= 0 ? std::numeric_limits<float>::infinity() : -1.0f;
+  }
+}
+
+/// No optic shows itself, but other optics show: a hit on the own optic is passed and the query goes on
+/// behind it.
+void PacketTracer::query_skipping_own_optic(Packet& p) const {
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
+  optics::RayPacket16 query = p.second;
+  for (int pass = 0; pass <= kMaxOwnHits; ++pass) {
+    rays_.intersect16(query, pass < kMaxOwnHits ? optics::kEverything : optics::kSurroundings, true);
+    bool again = false;
+    for (int i = 0; i < kLanes; ++i) {
+      if (query.t_max[i] < query.t_min[i]) continue;  // done before, or never active
+      if (query.object[i] != optics::kNoHit && int(query.object[i]) == int(first_optic) + p.optic[i]) {
+        query.t_min[i] = query.t_max[i] * (1 + 1e-6f) + 1e-3f;
+        query.t_max[i] = std::numeric_limits<float>::infinity();
+        again = true;
+        continue;
+      }
+      p.second.t_max[i] = query.t_max[i];
+      p.second.normal_x[i] = query.normal_x[i];
+      p.second.normal_y[i] = query.normal_y[i];
+      p.second.normal_z[i] = query.normal_z[i];
+      p.second.u[i] = query.u[i];
+      p.second.v[i] = query.v[i];
+      p.second.triangle[i] = query.triangle[i];
+      p.second.object[i] = query.object[i];
+      query.t_max[i] = query.t_min[i] - 1;
+    }
+    if (!again) return;
+  }
+}
+
+/// Hands each lane's last hit and the size of its pixel there to shading.
+void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
+  const auto pixel_area = float(camera.pixel * camera.pixel);
+  const auto take = [&p](const optics::RayPacket16& from, int i) {
+    p.shade.direction_x[i] = from.direction_x[i];
+    p.shade.direction_y[i] = from.direction_y[i];
+    p.shade.direction_z[i] = from.direction_z[i];
+    p.shade.position_x[i] = from.origin_x[i] + from.t_max[i] * from.direction_x[i];
+    p.shade.position_y[i] = from.origin_y[i] + from.t_max[i] * from.direction_y[i];
+    p.shade.position_z[i] = from.origin_z[i] + from.t_max[i] * from.direction_z[i];
+    p.shade.normal_x[i] = from.normal_x[i];
+    p.shade.normal_y[i] = from.normal_y[i];
+    p.shade.normal_z[i] = from.normal_z[i];
+    p.shade.u[i] = from.u[i];
+    p.shade.v[i] = from.v[i];
+    p.shade.object[i] = from.object[i];
+    p.shade.triangle[i] = from.triangle[i];
+  };
+  for (int i = 0; i < kLanes; ++i) {
+    take(p.first, i);
+    p.shade.footprint[i] = pixel_area * p.first.t_max[i] * p.first.t_max[i];
+  }
+  if (!p.any_mirror) return;
+  for (int i = 0; i < kLanes; ++i) {
+    if (p.optic[i] < 0) continue;
+    take(p.second, i);
+    const double depth = p.mirror.distance[i] / p.stretch[i], s = p.second.t_max[i];
+    const double spread = std::abs(1 + s * (p.mirror.wave_sum[i] + s * p.mirror.wave_product[i]));
+    p.shade.footprint[i] = float(camera.pixel * camera.pixel * depth * depth / p.stretch[i] * spread);
+  }
+}
+
+std::size_t PacketTracer::trace(const CameraRays& camera, const FrameOptions& options,
+                                const PixelPacket& pixels, Frame& frame) const {
+  Packet p;
+  std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
+  const int samples = std::max(1, options.samples);
+  float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
+  std::size_t rays = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    primary(camera, pixels, sample_offset(sample, samples), p);
+    reflect(camera, p);
+    set_hits(camera, p);
+    shading_.shade(p.shade);
+    for (int i = 0; i < kLanes; ++i) {
+      const bool mirrored = p.optic[i] >= 0;
+      const glm::vec3 tint = mirrored ? scene_.optics[std::size_t(p.optic[i])].reflectance : glm::vec3(1);
+      red[i] += tint.r * p.shade.red[i];
+      green[i] += tint.g * p.shade.green[i];
+      blue[i] += tint.b * p.shade.blue[i];
+      rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
+    }
+    if (sample == 0 && options.geometry) write_geometry(camera, pixels, p, frame);
+  }
+  const float share = 1 / float(samples);
+  for (int i = 0; i < kLanes; ++i)
+    if (pixels.active[i])
+      frame.color[std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i])] =
+          glm::vec4(share * red[i], share * green[i], share * blue[i], 1);
+  return rays;
+}
+
+void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
+                                  Frame& frame) const {
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i]) continue;
+    const std::size_t at =
+        std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
+    const bool mirrored = p.optic[i] >= 0;
+    const optics::RayPacket16& last = mirrored ? p.second : p.first;
+    glm::dvec3 origin = camera.eye_mm, direction = camera.direction(p.column[i], p.row[i]);
+    if (mirrored) {
+      origin = {p.mirror.surface_x[i], p.mirror.surface_y[i], p.mirror.surface_z[i]};
+      direction = {p.mirror.reflected_x[i], p.mirror.reflected_y[i], p.mirror.reflected_z[i]};
+    }
+    const bool sky = last.object[i] == optics::kNoHit;
+    frame.position[at] = sky ? glm::vec4(glm::vec3(glm::normalize(direction)), 0)
+                             : glm::vec4(glm::vec3(origin + double(last.t_max[i]) * direction), 1);
+    frame.surface[at] = mirrored ? glm::vec3(origin) : glm::vec3(0);
+    frame.direction[at] = mirrored ? glm::vec3(direction) : glm::vec3(0);
+    frame.optic_id[at] = p.optic[i];
+  }
+}
+
+std::optional<ReflectedPacket> PacketTracer::reflect_only(const CameraRays& camera,
+                                                          const PixelPacket& pixels) const {
+  Packet p;
+  primary(camera, pixels, {0, 0}, p);
+  reflect(camera, p);
+  if (!p.any_mirror) return std::nullopt;
+  ReflectedPacket result;
+  for (int i = 0; i < kLanes; ++i) {
+    result.origin_x[i] = p.second.origin_x[i];
+    result.origin_y[i] = p.second.origin_y[i];
+    result.origin_z[i] = p.second.origin_z[i];
+    result.direction_x[i] = p.second.direction_x[i];
+    result.direction_y[i] = p.second.direction_y[i];
+    result.direction_z[i] = p.second.direction_z[i];
+    result.t_max[i] = p.optic[i] >= 0 ? std::numeric_limits<float>::infinity() : -1.0f;
+  }
+  return result;
+}
+
+void PacketTracer::query_primary(const CameraRays& camera, const PixelPacket& pixels) const {
+  Packet p;
+  primary(camera, pixels, {0, 0}, p);
+}
+
+void PacketTracer::query_reflected(const ReflectedPacket& reflected) const {
+  optics::RayPacket16 packet;
+  for (int i = 0; i < kLanes; ++i) {
+    packet.origin_x[i] = reflected.origin_x[i];
+    packet.origin_y[i] = reflected.origin_y[i];
+    packet.origin_z[i] = reflected.origin_z[i];
+    packet.direction_x[i] = reflected.direction_x[i];
+    packet.direction_y[i] = reflected.direction_y[i];
+    packet.direction_z[i] = reflected.direction_z[i];
+    packet.t_min[i] = 0;
+    packet.t_max[i] = reflected.t_max[i];
+  }
+  rays_.intersect16(packet, scene_.optics.size() > 1 ? optics::kEverything : optics::kSurroundings, true);
+}
+
+}  // namespace catoptra::render

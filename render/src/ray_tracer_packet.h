@@ -1,0 +1,65 @@
+// One packet of 16 pixels from the eye to its colours.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "optics/ray_scene.h"
+#include "render/frame.h"
+#include "render/src/ray_tracer_exact.h"
+#include "render/src/sampling.h"
+#include "render/src/shading.h"
+
+namespace catoptra::render {
+
+struct PixelPacket {
+  static constexpr int kLanes = 16;
+  int column[kLanes], row[kLanes];
+  bool active[kLanes];
+};
+
+/// The reflected rays of a packet, for timing queries alone.
+struct alignas(64) ReflectedPacket {
+  float origin_x[16], origin_y[16], origin_z[16], direction_x[16], direction_y[16], direction_z[16];
+  float t_max[16];  ///< negative: inactive
+};
+
+class PacketTracer {
+ public:
+  /// Keeps references to all three, which must outlive it.
+  PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays);
+
+  void optic_changed(std::size_t index);
+
+  /// Traces and shades all samples of the active pixels and writes them into `frame`. Returns the number of
+  /// rays.
+  std::size_t trace(const CameraRays& camera, const FrameOptions& options, const PixelPacket& pixels,
+                    Frame& frame) const;
+
+  /// The reflected rays of the pixels' centres; nullopt where none is reflected.
+  [[nodiscard]] std::optional<ReflectedPacket> reflect_only(const CameraRays& camera,
+                                                            const PixelPacket& pixels) const;
+
+  /// Bare queries, as trace() makes them.
+  void query_primary(const CameraRays& camera, const PixelPacket& pixels) const;
+  void query_reflected(const ReflectedPacket& reflected) const;
+
+ private:
+  struct Packet;
+
+  void primary(const CameraRays& camera, const PixelPacket& pixels, glm::dvec2 offset, Packet& p) const;
+  void reflect(const CameraRays& camera, Packet& p) const;
+  void load_reflected(Packet& p) const;
+  void query_skipping_own_optic(Packet& p) const;
+  void set_hits(const CameraRays& camera, Packet& p) const;
+  void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
+                      Frame& frame) const;
+
+  const Scene& scene_;
+  const optics::RayScene& rays_;
+  ShadingScene shading_;
+  std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic
+};
+
+}  // namespace catoptra::render
