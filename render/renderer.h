@@ -29,6 +29,9 @@ class Renderer {
   /// Throws catoptra::Error where a mode needs OpenGL and no context can be made (it lists what was tried).
   [[nodiscard]] RenderResult render(Mode mode, const Camera& camera, const FrameOptions& options);
 
+  /// Time in ms of the bare packet queries of a raytrace frame: the yardstick of the reference's speed.
+  [[nodiscard]] double bare_packet_ms(const Camera& camera, const FrameOptions& options) const;
+
   /// Tells the renderer that the mesh of optic `index` in the scene has changed or moved.
   void optic_changed(std::size_t index);
 

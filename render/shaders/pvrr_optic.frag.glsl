@@ -1,0 +1,45 @@
+// PVRR pass 2 (paper 3.1, step 4): the optic with its reflection map. Variant: GEOMETRY.
+// Needs raster_view.glsl, raster_shading.glsl, raster_optic.glsl.
+
+in vec3 v_relative;
+in vec3 v_normal;
+in vec3 v_texture;  // homogeneous map coordinates (s q, t q, q)
+
+layout(location = 7) uniform vec2 map_shift;  // sub-texel offset with which this sample's map was drawn
+
+layout(binding = 2) uniform sampler2D map_color;
+#ifdef GEOMETRY
+layout(binding = 3) uniform sampler2D map_position;
+layout(binding = 4) uniform sampler2D map_normal;
+// The ray that map coordinates (s, t) show: origin and direction, each as value at (0, 0), change by s, change by t.
+layout(location = 8) uniform mat3 map_ray_origin;
+layout(location = 9) uniform mat3 map_ray_direction;
+#endif
+
+layout(binding = 0, offset = 0) uniform atomic_uint outside_map;
+
+void main() {
+  vec2 st = v_texture.xy / v_texture.z;
+  bool reflects = gl_FrontFacing == front_reflects;
+  bool inside = all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0)));
+  vec3 direction = reflect(v_relative, normalize(v_normal));
+  // Map row 0 is the top.
+  vec2 at = vec2(st.x, 1.0 - st.y) + map_shift;
+  vec3 seen;
+  if (inside) {
+    seen = textureLod(map_color, at, 0.0).rgb;
+  } else {
+    seen = sky(direction);
+    if (reflects) atomicCounterIncrement(outside_map);
+  }
+  write_optic_color(reflects, seen, v_relative, v_normal);
+#ifdef GEOMETRY
+  vec4 shown = vec4(normalize(direction), 0.0);
+  if (inside) {
+    vec3 ray = map_ray_direction * vec3(1.0, st);
+    shown = point_on_ray(map_ray_origin * vec3(1.0, st), ray, textureLod(map_position, at, 0.0),
+                         textureLod(map_normal, at, 0.0).xyz);
+  }
+  write_optic_geometry(reflects, shown, v_relative);
+#endif
+}

@@ -1,0 +1,27 @@
+// The one shading model of all modes (docs/decisions/0001); needs raster_view.glsl.
+
+const float kPi = 3.14159265358979;
+
+layout(binding = 7) uniform sampler2D sky_texture;
+
+/// Radiance of a Lambert surface. `normal`: interpolated, towards the viewer; `position`: relative to the view.
+vec3 shade(vec3 albedo, vec3 emissive, vec3 normal, vec3 position) {
+  vec3 irradiance = vec3(parameters.y);
+  int count = int(parameters.z);
+  for (int i = 0; i < count; ++i) {
+    vec3 to_light = lights[i].position.xyz - lights[i].position.w * position;
+    float inverse_distance = inversesqrt(dot(to_light, to_light));
+    // Intensity is the irradiance at 1 m = 1000 mm, and falls with the distance squared.
+    float fall_off = lights[i].position.w > 0.0 ? 1e6 * inverse_distance * inverse_distance : 1.0;
+    irradiance += lights[i].radiance.rgb * (fall_off * max(0.0, dot(normal, to_light) * inverse_distance));
+  }
+  return emissive + albedo * irradiance;
+}
+
+/// Radiance of the sky in a world direction of any length. Equirectangular: the top row is +z, the centre +y.
+vec3 sky(vec3 direction) {
+  if (sky_color.w == 0.0) return sky_color.rgb;
+  vec3 d = normalize(direction);
+  vec2 st = vec2(0.5 + atan(d.x, d.y) / (2.0 * kPi), acos(clamp(d.z, -1.0, 1.0)) / kPi);
+  return textureLod(sky_texture, st, 0.0).rgb;
+}

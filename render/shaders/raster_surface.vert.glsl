@@ -1,0 +1,22 @@
+// A vertex of the surroundings or of an optic; needs raster_view.glsl.
+
+layout(location = 0) in vec3 in_position;  // mm, relative to the mesh's own origin
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) in vec3 in_texture;   // surroundings: (s, t, -); optic: map coordinates (s q, t q, q)
+
+// The view's origin less the mesh's, in two floats that together hold a double's leading 48 bits.
+layout(location = 0) uniform vec3 origin_high;
+layout(location = 1) uniform vec3 origin_low;
+
+out vec3 v_relative;  // position relative to the view's origin
+out vec3 v_normal;
+out vec3 v_texture;
+
+void main() {
+  // `precise` keeps the compiler from adding the two halves first.
+  precise vec3 relative = (in_position - origin_high) - origin_low;
+  v_relative = relative;
+  v_normal = in_normal;
+  v_texture = in_texture;
+  gl_Position = clip_from_relative * vec4(relative, 1.0);
+}

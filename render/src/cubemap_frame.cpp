@@ -1,0 +1,128 @@
+#include "render/src/cubemap_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/src/raster_optic_uniforms.h"
+#include "render/src/sampling.h"
+
+namespace catoptra::render {
+namespace {
+
+constexpr GLint kCubeCenter = 8;  // as in cubemap_optic.frag.glsl
+constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
+constexpr int kSmallest = 64, kLargest = 2048, kLargestWithGeometry = 1024;
+
+/// Texels per unit of tangent are the same at the middle of a face and of the picture, times
+/// texels_per_pixel.
+int face_size(const Camera& camera, const FrameOptions& options, double texels_per_pixel) {
+  const double pixels_per_tangent = options.height / (2 * std::tan(camera.fov_rad / 2));
+  const int size = static_cast<int>(std::ceil(2 * pixels_per_tangent * texels_per_pixel));
+  return std::clamp(size, kSmallest, options.geometry ? kLargestWithGeometry : kLargest);
+}
+
+}  // namespace
+
+CubemapFrame::CubemapFrame(const Scene& scene, RasterScene& raster)
+    : scene_(scene), raster_(raster), cubes_(scene.optics.size()) {
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+}
+
+RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
+  RenderResult result;
+  double pass1_ms = 0, pass2_ms = 0, readback_ms = 0;
+  const glm::ivec2 size(options.width, options.height);
+  const int face = face_size(camera, options, scene_.settings.texels_per_pixel);
+  const double pixels_per_tangent = options.height / (2 * std::tan(camera.fov_rad / 2));
+  const double total_ms = gl_time_ms([&] {
+    picture.begin(options);
+    // The cube map does not change while the samples move within their pixels.
+    pass1_ms = gl_time_ms([&] {
+      for (std::size_t i = 0; i < cubes_.size(); ++i)
+        draw_cube(i, face, face / (2 * pixels_per_tangent), options.geometry);
+    });
+    for (int sample = 0; sample < options.samples; ++sample)
+      pass2_ms += gl_time_ms([&] {
+        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
+        RasterPass pass;
+        pass.geometry = options.geometry && sample == 0;
+        picture.target().bind(pass.geometry);
+        raster_.draw(view, pass);
+        for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, view, pass.geometry);
+        picture.add_sample();
+      });
+    if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
+  });
+  result.stats.time_ms = {{"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
+  if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
+  for (const optics::Optic& optic : scene_.optics)
+    result.stats.optics.push_back({optic.name,
+                                   optic.kind == optics::OpticKind::mirror ? "mirror" : "lens",
+                                   optic.mesh.vertices.size(),
+                                   0,
+                                   {}});
+  return result;
+}
+
+void CubemapFrame::draw_cube(std::size_t optic, int size, double texels_per_pixel, bool geometry) {
+  Cube& cube = cubes_[optic];
+  if (cube.size != size || cube.geometry != geometry) {
+    cube = Cube();
+    cube.size = size;
+    cube.geometry = geometry;
+    cube.color = make_texture_cube(GL_RGBA16F, size, true);
+    cube.depth = make_texture_2d(GL_DEPTH_COMPONENT32F, size, size, 1, false);
+    if (geometry) {
+      cube.position = make_texture_cube(GL_RGBA32F, size, false);
+      cube.detail = make_texture_cube(GL_RGBA32F, size, false);
+    }
+  }
+  const GlFramebuffer framebuffer = [&] {
+    return geometry ? make_framebuffer({&cube.color, &cube.position, &cube.detail}, nullptr)
+                    : make_framebuffer({&cube.color}, nullptr);
+  }();
+  glNamedFramebufferTexture(framebuffer.id(), GL_DEPTH_ATTACHMENT, cube.depth.id(), 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  RasterPass pass;
+  pass.geometry = geometry;
+  pass.level_bias = static_cast<float>(std::log2(texels_per_pixel));
+  pass.draw_optics = true;
+  pass.except = optic;
+  for (int face = 0; face < 6; ++face) {
+    glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT0, cube.color.id(), 0, face);
+    if (geometry) {
+      glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT1, cube.position.id(), 0, face);
+      glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT2, cube.detail.id(), 0, face);
+    }
+    raster_.draw(cube_face_view(raster_.optic(optic).center_mm(), face, size), pass);
+  }
+}
+
+void CubemapFrame::draw_optic(std::size_t optic, const RasterView& camera, bool geometry) {
+  const Cube& cube = cubes_[optic];
+  glUseProgram(optic_program(geometry).id());
+  RasterScene::set_mesh_origin(camera, raster_.optic(optic).center_mm());
+  set_optic_uniforms(scene_.optics[optic], optic);
+  glBindTextureUnit(kMapColorUnit, cube.color.id());
+  if (geometry) {
+    const glm::vec3 center(raster_.optic(optic).center_mm());
+    glUniform3f(kCubeCenter, center.x, center.y, center.z);
+    glBindTextureUnit(kMapPositionUnit, cube.position.id());
+    glBindTextureUnit(kMapDetailUnit, cube.detail.id());
+  }
+  raster_.optic(optic).draw_surface();
+}
+
+const GlProgram& CubemapFrame::optic_program(bool geometry) {
+  const auto found = optic_programs_.find(geometry);
+  if (found != optic_programs_.end()) return found->second;
+  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  return optic_programs_
+      .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                                      {"raster_view.glsl", "raster_shading.glsl", "raster_optic.glsl",
+                                       "cubemap_optic.frag.glsl"},
+                                      defines))
+      .first->second;
+}
+
+}  // namespace catoptra::render

@@ -1,0 +1,84 @@
+#include "render/src/hybrid_frame.h"
+
+#include "render/src/sampling.h"
+
+namespace catoptra::render {
+
+HybridFrame::HybridFrame(const Scene& scene, RasterScene& raster, const RayTracer& tracer)
+    : scene_(scene),
+      raster_(raster),
+      tracer_(tracer),
+      mask_program_(
+          make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_mask.frag.glsl"})) {}
+
+RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
+  RenderResult result;
+  double raster_ms = 0, readback_ms = 0, trace_ms = 0;
+  const glm::ivec2 size(options.width, options.height);
+  const double total_ms = gl_time_ms([&] {
+    raster_ms = gl_time_ms([&] {
+      picture.begin(options);
+      begin_mask(picture.target());
+      for (int sample = 0; sample < options.samples; ++sample) {
+        RasterPass pass;
+        pass.geometry = options.geometry && sample == 0;
+        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
+        picture.target().bind(pass.geometry);
+        raster_.draw(view, pass);
+        draw_mask(view);
+        picture.add_sample();
+      }
+    });
+    std::vector<std::uint32_t> pixels;
+    readback_ms = gl_time_ms([&] {
+      result.frame = picture.read_back();
+      pixels = masked_pixels();
+    });
+    trace_ms =
+        gl_time_ms([&] { result.stats.rays = tracer_.trace_pixels(camera, options, pixels, result.frame); });
+  });
+  result.stats.time_ms = {
+      {"raster", raster_ms}, {"readback", readback_ms}, {"trace", trace_ms}, {"total", total_ms}};
+  for (const optics::Optic& optic : scene_.optics)
+    result.stats.optics.push_back(
+        {optic.name,
+         optic.kind == optics::OpticKind::mirror ? "mirror" : "lens",
+         optic.mesh.vertices.size(),
+         // Rays are traced by pixel and may meet several optics; a single one gets them all.
+         scene_.optics.size() == 1 ? result.stats.rays : 0,
+         {}});
+  return result;
+}
+
+void HybridFrame::begin_mask(const RasterTarget& target) {
+  if (mask_size_ != target.size()) {
+    mask_ = make_texture_2d(GL_R8, target.size().x, target.size().y, 1, false);
+    mask_size_ = target.size();
+  }
+  // The depth texture may be another one than in the last frame.
+  mask_framebuffer_ = make_framebuffer({&mask_}, &target.depth());
+  const glm::vec4 nothing(0);
+  glClearNamedFramebufferfv(mask_framebuffer_.id(), GL_COLOR, 0, &nothing.x);
+}
+
+void HybridFrame::draw_mask(const RasterView& view) {
+  glBindFramebuffer(GL_FRAMEBUFFER, mask_framebuffer_.id());
+  glUseProgram(mask_program_.id());
+  for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
+    RasterScene::set_mesh_origin(view, raster_.optic(i).center_mm());
+    raster_.optic(i).draw_surface();
+  }
+}
+
+std::vector<std::uint32_t> HybridFrame::masked_pixels() const {
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(mask_size_.x) *
+                                 static_cast<std::size_t>(mask_size_.y));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[i]) pixels.push_back(static_cast<std::uint32_t>(i));
+  return pixels;
+}
+
+}  // namespace catoptra::render

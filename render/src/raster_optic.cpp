@@ -1,0 +1,168 @@
+#include "render/src/raster_optic.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace catoptra::render {
+namespace {
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+struct Vertex {
+  glm::vec3 position, normal;
+};
+
+double radius_about(const optics::Optic& optic, const glm::dvec3& center) {
+  double radius = 0;
+  for (const auto& vertex : optic.mesh.vertices)
+    radius = std::max(radius, glm::distance(vertex.position_mm, center));
+  return radius;
+}
+
+std::vector<std::uint32_t> unique_edges(const optics::Optic& optic) {
+  std::set<Edge> edges;
+  for (const auto& triangle : optic.mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(triangle.vertices[k], triangle.vertices[(k + 1) % 3]);
+      edges.emplace(a, b);
+    }
+  std::vector<std::uint32_t> indices;
+  indices.reserve(2 * edges.size());
+  for (const auto& [a, b] : edges) {
+    indices.push_back(a);
+    indices.push_back(b);
+  }
+  return indices;
+}
+
+/// For each vertex the first one at the same place: at a crease every face has a vertex of its own there.
+std::vector<std::uint32_t> weld(const optics::Optic& optic) {
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  std::vector<std::uint32_t> welded;
+  welded.reserve(optic.mesh.vertices.size());
+  for (const auto& v : optic.mesh.vertices) {
+    const std::array<double, 3> key{v.position_mm.x, v.position_mm.y, v.position_mm.z};
+    welded.push_back(first.emplace(key, static_cast<std::uint32_t>(welded.size())).first->second);
+  }
+  return welded;
+}
+
+/// Triangles that continue the surface beyond its border.
+std::vector<Vertex> make_skirt(const optics::Optic& optic, const glm::dvec3& center) {
+  const std::vector<std::uint32_t> welded = weld(optic);
+  std::map<Edge, Edge> border;  // sorted edge -> the edge as its only triangle runs through it
+  for (const auto& triangle : optic.mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Edge directed{welded[triangle.vertices[k]], welded[triangle.vertices[(k + 1) % 3]]};
+      const Edge sorted = std::minmax(directed.first, directed.second);
+      if (!border.emplace(sorted, directed).second) border.erase(sorted);
+    }
+  const double width = radius_about(optic, center);
+  // The outward direction at a vertex is the mean over its border edges, so that the skirt has no gap at
+  // corners.
+  std::map<std::uint32_t, glm::dvec3> outward;
+  for (const auto& [sorted, edge] : border) {
+    const auto &a = optic.mesh.vertices[edge.first], &b = optic.mesh.vertices[edge.second];
+    const glm::dvec3 across = glm::cross(b.position_mm - a.position_mm, a.normal + b.normal);
+    const double length = glm::length(across);
+    if (length == 0) continue;
+    outward[edge.first] += across / length;
+    outward[edge.second] += across / length;
+  }
+  const auto vertex = [&](std::uint32_t index, bool outer) {
+    const auto& v = optic.mesh.vertices[index];
+    glm::dvec3 position = v.position_mm - center;
+    const glm::dvec3 direction = outward[index] - glm::dot(outward[index], v.normal) * v.normal;
+    if (outer && glm::length(direction) > 0) position += width * glm::normalize(direction);
+    return Vertex{glm::vec3(position), glm::vec3(v.normal)};
+  };
+  std::vector<Vertex> skirt;
+  for (const auto& [sorted, edge] : border)
+    for (const auto& [index, outer] : std::array<std::pair<std::uint32_t, bool>, 6>{{{edge.first, false},
+                                                                                     {edge.first, true},
+                                                                                     {edge.second, true},
+                                                                                     {edge.first, false},
+                                                                                     {edge.second, true},
+                                                                                     {edge.second, false}}})
+      skirt.push_back(vertex(index, outer));
+  return skirt;
+}
+
+}  // namespace
+
+glm::dvec3 area_centroid(const optics::Optic& optic) {
+  glm::dvec3 sum(0);
+  double area = 0;
+  for (const auto& triangle : optic.mesh.triangles) {
+    const auto& a = optic.mesh.vertices[triangle.vertices[0]].position_mm;
+    const auto& b = optic.mesh.vertices[triangle.vertices[1]].position_mm;
+    const auto& c = optic.mesh.vertices[triangle.vertices[2]].position_mm;
+    const double twice_area = glm::length(glm::cross(b - a, c - a));
+    sum += twice_area * (a + b + c) / 3.0;
+    area += twice_area;
+  }
+  return area > 0 ? sum / area : glm::dvec3(0);
+}
+
+RasterOptic::RasterOptic(const optics::Optic& optic) : center_mm_(area_centroid(optic)) {
+  std::vector<Vertex> vertices;
+  vertices.reserve(optic.mesh.vertices.size());
+  for (const auto& v : optic.mesh.vertices)
+    vertices.push_back({glm::vec3(v.position_mm - center_mm_), glm::vec3(v.normal)});
+  std::vector<std::uint32_t> triangles;
+  triangles.reserve(3 * optic.mesh.triangles.size());
+  for (const auto& t : optic.mesh.triangles)
+    triangles.insert(triangles.end(), t.vertices.begin(), t.vertices.end());
+  const std::vector<std::uint32_t> edges = unique_edges(optic);
+  const std::vector<Vertex> skirt = make_skirt(optic, center_mm_);
+
+  vertices_ = make_static_buffer(std::as_bytes(std::span(vertices)));
+  map_coordinates_ = make_dynamic_buffer(vertices.size() * sizeof(glm::vec3));
+  triangles_ = make_static_buffer(std::as_bytes(std::span(triangles)));
+  edges_ = make_static_buffer(std::as_bytes(std::span(edges)));
+  skirt_vertices_ = make_static_buffer(std::as_bytes(std::span(skirt)));
+  triangle_indices_ = static_cast<GLsizei>(triangles.size());
+  edge_indices_ = static_cast<GLsizei>(edges.size());
+  skirt_vertex_count_ = static_cast<GLsizei>(skirt.size());
+
+  const auto array_with = [](const GlBuffer& indices, const GlBuffer& buffer) {
+    GlVertexArray array = make_vertex_array(indices);
+    bind_attributes(array, 0, buffer, sizeof(Vertex), {{0, 3, 0}, {1, 3, sizeof(glm::vec3)}});
+    return array;
+  };
+  surface_array_ = array_with(triangles_, vertices_);
+  bind_attributes(surface_array_, 1, map_coordinates_, sizeof(glm::vec3), {{2, 3, 0}});
+  edge_array_ = array_with(edges_, vertices_);
+  skirt_array_ = array_with({}, skirt_vertices_);
+}
+
+void RasterOptic::set_map_coordinates(std::span<const glm::dvec3> coordinates) {
+  std::vector<glm::vec3> narrow;
+  narrow.reserve(coordinates.size());
+  for (const glm::dvec3& c : coordinates) narrow.emplace_back(c);
+  update_buffer(map_coordinates_, std::as_bytes(std::span(narrow)));
+}
+
+void RasterOptic::draw_surface() const {
+  glBindVertexArray(surface_array_.id());
+  glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
+}
+
+void RasterOptic::draw_edges() const {
+  glBindVertexArray(edge_array_.id());
+  glDrawElements(GL_LINES, edge_indices_, GL_UNSIGNED_INT, nullptr);
+}
+
+void RasterOptic::draw_surface_with_skirt() const {
+  draw_surface();
+  glBindVertexArray(skirt_array_.id());
+  glDrawArrays(GL_TRIANGLES, 0, skirt_vertex_count_);
+}
+
+}  // namespace catoptra::render

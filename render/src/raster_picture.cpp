@@ -1,0 +1,73 @@
+#include "render/src/raster_picture.h"
+
+#include <glm/geometric.hpp>
+
+namespace catoptra::render {
+namespace {
+
+constexpr GLint kWeight = 2;  // as in raster_accumulate.frag.glsl
+
+void fill_geometry(const RasterTarget& target, Frame& frame) {
+  frame.position = read_texture(target.position(), target.size());
+  const std::vector<glm::vec4> detail = read_texture(target.detail(), target.size());
+  frame.surface.assign(detail.size(), glm::vec3(0));
+  frame.direction.assign(detail.size(), glm::vec3(0));
+  frame.optic_id.assign(detail.size(), -1);
+  for (std::size_t i = 0; i < detail.size(); ++i) {
+    if (detail[i].w < 0.5f) continue;
+    frame.optic_id[i] = static_cast<std::int32_t>(detail[i].w + 0.5f) - 1;
+    frame.surface[i] = glm::vec3(detail[i]);
+    const glm::vec3 shown(frame.position[i]);
+    const glm::vec3 direction = frame.position[i].w == 0 ? shown : shown - frame.surface[i];
+    const float length = glm::length(direction);
+    if (length > 0) frame.direction[i] = direction / length;
+  }
+}
+
+}  // namespace
+
+RasterPicture::RasterPicture()
+    : nothing_(make_vertex_array({})),
+      accumulate_(make_program({"raster_accumulate.vert.glsl"}, {"raster_accumulate.frag.glsl"})) {}
+
+void RasterPicture::begin(const FrameOptions& options) {
+  options_ = options;
+  const glm::ivec2 size(options.width, options.height);
+  RasterTarget::fit(target_, size, options.geometry);
+  if (options.samples <= 1) return;
+  if (sum_size_ != size) {
+    sum_ = make_texture_2d(GL_RGBA32F, size.x, size.y, 1, false);
+    sum_framebuffer_ = make_framebuffer({&sum_}, nullptr);
+    sum_size_ = size;
+  }
+  const glm::vec4 zero(0);
+  glClearNamedFramebufferfv(sum_framebuffer_.id(), GL_COLOR, 0, &zero.x);
+}
+
+void RasterPicture::add_sample() {
+  if (options_.samples <= 1) return;
+  glBindFramebuffer(GL_FRAMEBUFFER, sum_framebuffer_.id());
+  glViewport(0, 0, sum_size_.x, sum_size_.y);
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glUseProgram(accumulate_.id());
+  glUniform1f(kWeight, 1.0f / float(options_.samples));
+  glBindTextureUnit(0, target_->color().id());
+  glBindVertexArray(nothing_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+}
+
+Frame RasterPicture::read_back() const {
+  Frame frame;
+  frame.width = options_.width;
+  frame.height = options_.height;
+  frame.color = read_texture(options_.samples > 1 ? sum_ : target_->color(), target_->size());
+  for (glm::vec4& pixel : frame.color) pixel.w = 1;
+  if (options_.geometry) fill_geometry(*target_, frame);
+  return frame;
+}
+
+}  // namespace catoptra::render

@@ -1,0 +1,257 @@
+#include "render/src/raster_scene.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <tuple>
+
+#include "cad_import/error.h"
+
+namespace catoptra::render {
+namespace {
+
+// As in raster_view.glsl and raster_surface.*.glsl.
+constexpr std::size_t kMaxLights = 64;
+constexpr GLint kOriginHigh = 0, kOriginLow = 1, kAlbedo = 2, kEmissive = 3, kAlpha = 4;
+constexpr GLuint kAlbedoUnit = 0, kOpticDepthUnit = 1, kSkyUnit = 7;
+
+struct GpuLight {
+  glm::vec4 position, radiance;
+};
+
+struct GpuView {
+  glm::mat4 clip_from_relative;
+  glm::vec4 origin, sky_center, sky_x, sky_y, sky_color, parameters;
+  GpuLight lights[kMaxLights];
+};
+
+struct Vertex {
+  glm::vec3 position, normal;
+  glm::vec2 texture;
+};
+
+GpuLight gpu_light(const Light& light, const glm::dvec3& origin_mm) {
+  const glm::vec4 radiance(light.color * light.intensity, 0);
+  if (light.kind == LightKind::directional)
+    return {glm::vec4(glm::vec3(-glm::normalize(light.direction)), 0), radiance};
+  return {glm::vec4(glm::vec3(light.position_mm - origin_mm), 1), radiance};
+}
+
+void set_vec3(GLint location, const glm::vec3& v) {
+  glUniform3f(location, v.x, v.y, v.z);
+}
+
+}  // namespace
+
+RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : scene_(scene) {
+  if (scene.lights.size() > kMaxLights)
+    throw Error(scene.file, "light", "there are more than " + std::to_string(kMaxLights) + " lights",
+                "use mode raytrace, or fewer lights");
+  view_uniforms_ = make_dynamic_buffer(sizeof(GpuView));
+  nothing_ = make_vertex_array({});
+  upload_surroundings();
+  upload_textures(textures);
+  optics_.reserve(scene.optics.size());
+  for (const optics::Optic& optic : scene.optics) optics_.emplace_back(optic);
+  depth_program_ = make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_depth.frag.glsl"});
+}
+
+void RasterScene::upload_surroundings() {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  GLint first_texture = 0;
+  for (const cad_import::TriangleMesh& mesh : scene_.surroundings) {
+    const auto base = static_cast<std::uint32_t>(vertices.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      vertices.push_back({mesh.positions[i], mesh.normals[i],
+                          i < mesh.texture_coordinates.size() ? mesh.texture_coordinates[i] : glm::vec2(0)});
+    std::vector<std::vector<std::uint32_t>> by_material(mesh.materials.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k)
+        by_material[mesh.triangle_material[t]].push_back(base + mesh.triangles[t][k]);
+    for (std::size_t m = 0; m < by_material.size(); ++m) {
+      if (by_material[m].empty()) continue;
+      const cad_import::Material& material = mesh.materials[m];
+      batches_.push_back({static_cast<GLsizei>(by_material[m].size()), indices.size(),
+                          material.texture < 0 ? -1 : first_texture + material.texture,
+                          material.alpha_cutoff > 0, material.base_color, material.emissive, material.alpha,
+                          material.alpha_cutoff, material.wrap});
+      indices.insert(indices.end(), by_material[m].begin(), by_material[m].end());
+    }
+    first_texture += static_cast<GLint>(mesh.textures.size());
+  }
+  // Opaque surfaces first, since they hide and cost least; then by texture, so that each is bound once.
+  std::stable_sort(batches_.begin(), batches_.end(), [](const Batch& a, const Batch& b) {
+    return std::tuple(a.alpha_test, a.texture, int(a.wrap)) <
+           std::tuple(b.alpha_test, b.texture, int(b.wrap));
+  });
+  vertices_ = make_static_buffer(std::as_bytes(std::span(vertices)));
+  indices_ = make_static_buffer(std::as_bytes(std::span(indices)));
+  surroundings_ = make_vertex_array(indices_);
+  bind_attributes(surroundings_, 0, vertices_, sizeof(Vertex), {{0, 3, 0}, {1, 3, 12}, {2, 2, 24}});
+}
+
+void RasterScene::upload_textures(const SceneTextures& textures) {
+  for (const auto& of_mesh : textures.textures)
+    for (const MipTexture& texture : of_mesh) {
+      const auto& levels = texture.levels;
+      GlTexture gpu = make_texture_2d(GL_SRGB8_ALPHA8, levels[0].width, levels[0].height,
+                                      static_cast<int>(levels.size()), true);
+      for (std::size_t l = 0; l < levels.size(); ++l)
+        glTextureSubImage2D(gpu.id(), static_cast<GLint>(l), 0, 0, levels[l].width, levels[l].height, GL_RGBA,
+                            GL_UNSIGNED_BYTE, levels[l].rgba.data());
+      textures_.push_back(std::move(gpu));
+    }
+  for (const auto wrap :
+       {cad_import::TextureWrap::repeat, cad_import::TextureWrap::clamp, cad_import::TextureWrap::mirror}) {
+    GLuint id = 0;
+    glCreateSamplers(1, &id);
+    const GLint mode = wrap == cad_import::TextureWrap::repeat  ? GL_REPEAT
+                       : wrap == cad_import::TextureWrap::clamp ? GL_CLAMP_TO_EDGE
+                                                                : GL_MIRRORED_REPEAT;
+    glSamplerParameteri(id, GL_TEXTURE_WRAP_S, mode);
+    glSamplerParameteri(id, GL_TEXTURE_WRAP_T, mode);
+    glSamplerParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glSamplerParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    samplers_[static_cast<std::size_t>(wrap)] = GlSampler(id);
+  }
+  const SkyImage& sky = textures.sky;
+  if (sky.width == 0) return;
+  sky_ = make_texture_2d(GL_RGB32F, sky.width, sky.height, 1, true);
+  glTextureParameteri(sky_.id(), GL_TEXTURE_WRAP_S, GL_REPEAT);
+  glTextureSubImage2D(sky_.id(), 0, 0, 0, sky.width, sky.height, GL_RGB, GL_FLOAT, sky.rgb.data());
+}
+
+void RasterScene::optic_changed(std::size_t index) {
+  optics_[index] = RasterOptic(scene_.optics[index]);
+}
+
+void RasterScene::begin_view(const RasterView& view, float level_bias) const {
+  const RasterView::Directions directions = view.directions();
+  GpuView gpu{};
+  gpu.clip_from_relative = glm::mat4(view.clip_from_relative());
+  gpu.origin = glm::vec4(glm::vec3(view.origin_mm), 1);
+  gpu.sky_center = glm::vec4(glm::vec3(directions.center), 0);
+  gpu.sky_x = glm::vec4(glm::vec3(directions.dx), 0);
+  gpu.sky_y = glm::vec4(glm::vec3(directions.dy), 0);
+  gpu.sky_color = glm::vec4(scene_.environment.color, sky_ ? 1 : 0);
+  gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, float(scene_.lights.size()), 0);
+  for (std::size_t i = 0; i < scene_.lights.size(); ++i)
+    gpu.lights[i] = gpu_light(scene_.lights[i], view.origin_mm);
+  update_buffer(view_uniforms_, std::as_bytes(std::span(&gpu, 1)));
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_uniforms_.id());
+  if (sky_) glBindTextureUnit(kSkyUnit, sky_.id());
+
+  glClipControl(view.bottom_row_first ? GL_LOWER_LEFT : GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  glViewport(0, 0, view.size.x, view.size.y);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+}
+
+void RasterScene::set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm) {
+  const glm::dvec3 origin = view.origin_mm - mesh_origin_mm;
+  const glm::vec3 high(origin), low(origin - glm::dvec3(high));
+  set_vec3(kOriginHigh, high);
+  set_vec3(kOriginLow, low);
+}
+
+void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
+  begin_view(view, pass.level_bias);
+  const glm::vec4 background(scene_.environment.color, 1);
+  glClearBufferfv(GL_COLOR, 0, &background.x);
+  const float farthest = 0;
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
+  draw_surroundings(view, pass);
+  if (pass.draw_optics) draw_optics(view, pass);
+  // A sky of one colour without geometry is the cleared background itself.
+  if (sky_ || pass.geometry) draw_sky(pass);
+}
+
+void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pass) {
+  glBindVertexArray(surroundings_.id());
+  GLuint program = 0;
+  for (const Batch& batch : batches_) {
+    const GLuint wanted =
+        surface_program(batch.texture >= 0, batch.alpha_test, pass.clip_depth != nullptr, pass.geometry).id();
+    if (wanted != program) {
+      glUseProgram(program = wanted);
+      set_mesh_origin(view, glm::dvec3(0));
+    }
+    if (batch.texture >= 0) {
+      glBindTextureUnit(kAlbedoUnit, textures_[static_cast<std::size_t>(batch.texture)].id());
+      glBindSampler(kAlbedoUnit, samplers_[static_cast<std::size_t>(batch.wrap)].id());
+    }
+    set_vec3(kAlbedo, batch.albedo);
+    set_vec3(kEmissive, batch.emissive);
+    if (batch.alpha_test) glUniform2f(kAlpha, batch.alpha, batch.cutoff);
+    glDrawElements(GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(batch.first * sizeof(std::uint32_t)));
+  }
+  glBindSampler(kAlbedoUnit, 0);
+}
+
+void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
+  glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
+  for (std::size_t i = 0; i < optics_.size(); ++i) {
+    if (pass.except == i) continue;
+    set_mesh_origin(view, optics_[i].center_mm());
+    set_vec3(kAlbedo, scene_.optics[i].reflectance);
+    set_vec3(kEmissive, glm::vec3(0));
+    optics_[i].draw_surface();
+  }
+}
+
+void RasterScene::draw_sky(const RasterPass& pass) {
+  glUseProgram(sky_program(pass.geometry).id());
+  glDepthFunc(GL_GEQUAL);
+  glBindVertexArray(nothing_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_GREATER);
+}
+
+void RasterScene::draw_optic_depth(const RasterView& view, std::size_t index) {
+  begin_view(view, 0);
+  const float nearest = 1;
+  glClearBufferfv(GL_DEPTH, 0, &nearest);
+  glDepthFunc(GL_LESS);
+  // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
+  glEnable(GL_DEPTH_CLAMP);
+  glUseProgram(depth_program_.id());
+  set_mesh_origin(view, optics_[index].center_mm());
+  optics_[index].draw_surface_with_skirt();
+  glDisable(GL_DEPTH_CLAMP);
+  glDepthFunc(GL_GREATER);
+}
+
+const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bool clip, bool geometry) {
+  const unsigned key =
+      unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
+  const auto found = surface_programs_.find(key);
+  if (found != surface_programs_.end()) return found->second;
+  std::vector<std::string> defines;
+  if (textured) defines.emplace_back("TEXTURED");
+  if (alpha_test) defines.emplace_back("ALPHA_TEST");
+  if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
+  if (geometry) defines.emplace_back("GEOMETRY");
+  return surface_programs_
+      .emplace(key,
+               make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                            {"raster_view.glsl", "raster_shading.glsl", "raster_surface.frag.glsl"}, defines))
+      .first->second;
+}
+
+const GlProgram& RasterScene::sky_program(bool geometry) {
+  const auto found = sky_programs_.find(geometry);
+  if (found != sky_programs_.end()) return found->second;
+  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  return sky_programs_
+      .emplace(geometry,
+               make_program({"raster_view.glsl", "raster_sky.vert.glsl"},
+                            {"raster_view.glsl", "raster_shading.glsl", "raster_sky.frag.glsl"}, defines))
+      .first->second;
+}
+
+}  // namespace catoptra::render

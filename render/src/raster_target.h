@@ -1,0 +1,42 @@
+// Textures that a view is drawn into: colour, depth and, where asked for, geometry.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+#include "render/src/gl_objects.h"
+
+namespace catoptra::render {
+
+/// Colour RGBA16F (linear radiance), reversed depth 32F; with geometry also world position and detail
+/// (RGBA32F), see raster_surface.frag.glsl and raster_optic.glsl. Colour can be sampled linearly, geometry
+/// only to the nearest texel.
+class RasterTarget {
+ public:
+  /// Throws catoptra::Error where the size is beyond what the driver can draw.
+  RasterTarget(glm::ivec2 size, bool geometry);
+
+  /// The target again if it has that size and (at least) that geometry, else a new one.
+  static void fit(std::unique_ptr<RasterTarget>& target, glm::ivec2 size, bool geometry);
+
+  /// Draws go into colour alone, or with geometry; both with the same depth buffer.
+  void bind(bool geometry) const;
+
+  [[nodiscard]] glm::ivec2 size() const { return size_; }
+  [[nodiscard]] const GlTexture& color() const { return color_; }
+  [[nodiscard]] const GlTexture& position() const { return position_; }
+  [[nodiscard]] const GlTexture& detail() const { return detail_; }
+  [[nodiscard]] const GlTexture& depth() const { return depth_; }
+
+ private:
+  glm::ivec2 size_;
+  GlTexture color_, position_, detail_, depth_;
+  GlFramebuffer color_only_, with_geometry_;
+};
+
+/// RGBA float content of level 0 of a texture of `size`, row 0 first.
+[[nodiscard]] std::vector<glm::vec4> read_texture(const GlTexture& texture, glm::ivec2 size);
+
+}  // namespace catoptra::render

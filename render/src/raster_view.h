@@ -1,0 +1,50 @@
+// A camera as the raster passes need it: rotation and projection about an origin kept in double precision.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "optics/virtual_view.h"
+#include "render/scene.h"
+
+namespace catoptra::render {
+
+/// Right-handed eye space (x right, y up, -z ahead); clip depth reversed: near -> 1, far -> 0.
+struct RasterView {
+  glm::dvec3 origin_mm{0};        ///< the eye; for a parallel projection, the origin of eye space
+  glm::dmat3 rotation{1};         ///< world axes to eye axes
+  glm::dmat4 projection{1};       ///< eye space to clip space
+  glm::ivec2 size{1, 1};          ///< pixels
+  bool bottom_row_first = false;  ///< row 0 of what is drawn is the bottom one (cube maps), else the top one
+
+  /// World position relative to the origin -> clip space.
+  [[nodiscard]] glm::dmat4 clip_from_relative() const;
+
+  /// Pixel coordinates (x right, y down, pixel centres at 0.5) of a world point; z > 0 where it lies ahead.
+  [[nodiscard]] glm::dvec3 pixel(const glm::dvec3& point_mm) const;
+
+  /// World direction seen at normalised device coordinates (x, y): center + x * dx + y * dy, not normalised.
+  struct Directions {
+    glm::dvec3 center, dx, dy;
+  };
+  [[nodiscard]] Directions directions() const;
+};
+
+/// The picture's view: infinite far plane, near plane at kCameraNear. `offset_px` moves the place in every
+/// pixel at which the scene is sampled (x right, y down, see sampling.h).
+[[nodiscard]] RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px = {0, 0});
+
+/// The reflection map's view; `offset_px` as above, in texels.
+[[nodiscard]] RasterView map_view(const optics::VirtualView& view, glm::ivec2 size,
+                                  glm::dvec2 offset_px = {0, 0});
+
+/// Face `face` (in OpenGL's order +x, -x, +y, -y, +z, -z) of a cube map around `center_mm`.
+[[nodiscard]] RasterView cube_face_view(const glm::dvec3& center_mm, int face, int size);
+
+/// Nearest visible distance of the camera, mm. Reversed floating-point depth is as precise for 1 mm as for 1
+/// m.
+inline constexpr double kCameraNear = 1.0;
+
+}  // namespace catoptra::render
