@@ -35,7 +35,7 @@ std::string words(const Entry& entry) {
 }
 
 /// In single quotes for the shells: an apostrophe ends the quotes, stands escaped, and opens them again.
-std::string quoted(const std::string& text) {
+std::string single_quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
@@ -83,11 +83,11 @@ std::string fish_script(const std::vector<Entry>& entries) {
       }
     }
     for (const auto& [name, description] : entry.commands)
-      text += "complete -c catoptra -n " + quoted(condition) + " -a " + name + " -d " + quoted(description) +
-              "\n";
+      text += "complete -c catoptra -n " + single_quoted(condition) + " -a " + name + " -d " +
+              single_quoted(description) + "\n";
     for (const auto& [name, description] : entry.options)
-      text += "complete -c catoptra -n " + quoted(condition) + " -l " + name.substr(2) + " -d " +
-              quoted(description) + "\n";
+      text += "complete -c catoptra -n " + single_quoted(condition) + " -l " + name.substr(2) + " -d " +
+              single_quoted(description) + "\n";
   }
   return text;
 }

@@ -40,8 +40,10 @@ std::string lower_suffix(const std::filesystem::path& file) {
 
 void write_renamed(const std::filesystem::path& file,
                    const std::function<void(const std::filesystem::path&)>& write) {
-  const std::string name =
-      "." + file.stem().string() + ".part" + std::to_string(getpid()) + file.extension().string();
+  std::filesystem::path name = ".";
+  name += file.stem();
+  name += ".part" + std::to_string(getpid());
+  name += file.extension();
   const TemporaryFile temporary{file.parent_path() / name};
   write(temporary.path);
   std::error_code failure;
