@@ -16,6 +16,22 @@ install(FILES ${PROJECT_BINARY_DIR}/catoptraConfig.cmake ${PROJECT_BINARY_DIR}/c
         DESTINATION ${catoptra_package_dir})
 
 install(TARGETS catoptra RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The command line writes its own manual page and shell completions, so that they cannot fall behind it.
+set(catoptra_generated ${PROJECT_BINARY_DIR}/share)
+file(MAKE_DIRECTORY ${catoptra_generated})
+add_custom_command(OUTPUT ${catoptra_generated}/catoptra.1 COMMAND catoptra man > ${catoptra_generated}/catoptra.1 VERBATIM)
+set(catoptra_generated_files ${catoptra_generated}/catoptra.1)
+foreach(shell bash zsh fish)
+  add_custom_command(OUTPUT ${catoptra_generated}/completion.${shell}
+                     COMMAND catoptra completion ${shell} > ${catoptra_generated}/completion.${shell} VERBATIM)
+  list(APPEND catoptra_generated_files ${catoptra_generated}/completion.${shell})
+endforeach()
+add_custom_target(catoptra_command_line_help ALL DEPENDS ${catoptra_generated_files})
+install(FILES ${catoptra_generated}/catoptra.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${catoptra_generated}/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME catoptra)
+install(FILES ${catoptra_generated}/completion.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _catoptra)
+install(FILES ${catoptra_generated}/completion.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d RENAME catoptra.fish)
+
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_BINARY_DIR}/examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catoptra/examples
         FILES_MATCHING PATTERN "*.toml" PATTERN "*.glb" PATTERN "*.step"

@@ -11,7 +11,7 @@ build/catoptra compare "$scene" -o "$work" --modes pvrr,hybrid,cubemap >"$work/t
 mkdir -p out
 cp "$work/pvrr.png" out/picture.png
 cp "$work/raytrace.png" out/reference.png
-cp "$work/pvrr-error.png" out/error.png
+cp "$work/error_pvrr.png" out/error.png
 cp "$work/report.json" out/report.json
 
 echo

@@ -42,7 +42,8 @@ void add_quad(Model& model, const std::string& material, const glm::vec3& lower_
   add_vertex(surface, lower_right, normal, {t.right, t.bottom});
   add_vertex(surface, upper_right, normal, {t.right, t.top});
   add_vertex(surface, upper_left, normal, {t.left, t.top});
-  surface.indices.insert(surface.indices.end(), {a, a + 1, a + 2, a, a + 2, a + 3});
+  surface.indices.insert(surface.indices.end(), {a, a + 1, a + 2});
+  if (upper_right != upper_left) surface.indices.insert(surface.indices.end(), {a, a + 2, a + 3});
 }
 
 void add_tiled_quad(Model& model, const std::string& material, const glm::vec3& lower_left,

@@ -16,7 +16,8 @@ struct TextureRect {
   float left = 0, top = 0, right = 1, bottom = 1;
 };
 
-/// A flat quadrilateral: lower left, lower right, upper right, upper left as seen from outside.
+/// A flat quadrilateral: lower left, lower right, upper right, upper left as seen from outside. Equal upper
+/// corners make a triangle.
 void add_quad(Model& model, const std::string& material, const glm::vec3& lower_left,
               const glm::vec3& lower_right, const glm::vec3& upper_right, const glm::vec3& upper_left,
               const TextureRect& texture = {});

@@ -1,0 +1,22 @@
+# run(WHAT command...): stops the test with the command's output where it fails.
+function(run what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${what}: exit code ${code}\n${output}")
+  endif()
+  message(STATUS "${what}: ${output}")
+  set(run_output "${output}" PARENT_SCOPE)
+endfunction()
+
+# must_exist(file...): stops the test where one is missing or empty.
+function(must_exist)
+  foreach(file IN LISTS ARGN)
+    if(NOT EXISTS ${file})
+      message(FATAL_ERROR "${file} is missing")
+    endif()
+    file(SIZE ${file} size)
+    if(size EQUAL 0)
+      message(FATAL_ERROR "${file} is empty")
+    endif()
+  endforeach()
+endfunction()
