@@ -11,14 +11,14 @@ namespace {
 
 constexpr GLint kCubeCenter = 8;  // as in cubemap_optic.frag.glsl
 constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
-constexpr int kSmallest = 64, kLargest = 2048, kLargestWithGeometry = 1024;
+constexpr int kSmallest = 64, kLargest = 1024;
 
 /// Texels per unit of tangent are the same at the middle of a face and of the picture, times
 /// texels_per_pixel.
 int face_size(const Camera& camera, const FrameOptions& options, double texels_per_pixel) {
   const double pixels_per_tangent = options.height / (2 * std::tan(camera.fov_rad / 2));
   const int size = static_cast<int>(std::ceil(2 * pixels_per_tangent * texels_per_pixel));
-  return std::clamp(size, kSmallest, options.geometry ? kLargestWithGeometry : kLargest);
+  return std::clamp(size, kSmallest, kLargest);
 }
 
 }  // namespace

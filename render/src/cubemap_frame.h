@@ -18,7 +18,7 @@ class CubemapFrame {
   CubemapFrame(const Scene& scene, RasterScene& raster);
 
   /// All six faces are drawn in every frame, each with as many texels per radian as a pixel's reflection off
-  /// a plane mirror needs for settings.texels_per_pixel, at most 2048 (1024 with geometry). Times: "pass1"
+  /// a plane mirror needs for settings.texels_per_pixel, at most 1024 a side. Times: "pass1"
   /// (six faces), "pass2", "readback", "total".
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
                                     RasterPicture& picture);

@@ -97,7 +97,12 @@ void Overlay::draw_mesh(const RasterView& view, const RasterOptic& optic) {
   // A thousandth of the distance lifts the lines off the facets that they lie on.
   glUniform1f(kLift, 1e-3f);
   glVertexAttrib4f(kBallAttribute, 0, 0, 0, 1);
+  // Half transparent, so that the balls which the vertices show stay visible under the lines.
+  glEnable(GL_BLEND);
+  glBlendColor(0, 0, 0, 0.5f);
+  glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
   optic.draw_edges();
+  glDisable(GL_BLEND);
 }
 
 const GlProgram& Overlay::program(bool clip) {

@@ -16,7 +16,7 @@ constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
 constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
 
 // How large a ball is to appear in the mirror, and how long the line of a ray that meets nothing is drawn.
-constexpr double kBallRadiusPx = 2.0;
+constexpr double kBallRadiusPx = 4.0;
 constexpr double kMissedRayLength = 2000;
 
 void set_columns(GLint location, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
