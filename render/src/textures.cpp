@@ -114,6 +114,8 @@ FloatImage decode_memory(const std::vector<std::byte>& bytes, const std::string&
   OIIO::ImageSpec spec;
   if (!input || !input->supports("ioproxy"))
     throw Error(file, name, "the embedded image has an unknown format", "PNG and JPEG are understood");
+  // OpenImageIO 2.4 hands the proxy of create() on only where create() opens the file itself.
+  input->set_ioproxy(&reader);
   if (!input->open(name.empty() ? "embedded" : name, spec, hints))
     throw Error(file, name, "cannot decode the image: " + last_oiio_error(input.get()));
   return read_linear(*input, name, file);
