@@ -64,18 +64,20 @@ Steps steps_at(const cad_import::SurfaceDerivatives& s, const glm::dvec2& extent
   const double turn_u = tangential(glm::cross(s.duu, s.dv) + glm::cross(s.du, s.duv)) / length_u;
   const double turn_v = tangential(glm::cross(s.duv, s.dv) + glm::cross(s.du, s.dvv)) / length_v;
   const double angle = limits.angle_rad * std::sqrt(0.5);
-  const double most_u =
-      std::min({turn_u > 0 ? angle / turn_u : kUnlimited, limits.length_mm, extent.x * length_u});
-  const double most_v =
-      std::min({turn_v > 0 ? angle / turn_v : kUnlimited, limits.length_mm, extent.y * length_v});
-
+  const double most_u = std::min(turn_u > 0 ? angle / turn_u : kUnlimited, limits.length_mm);
+  const double most_v = std::min(turn_v > 0 ? angle / turn_v : kUnlimited, limits.length_mm);
   const Steps wanted{std::min(chord.u, most_u), std::min(chord.v, most_v)};
-  Steps mm{std::min(wanted.u, kMaxAspect * wanted.v), std::min(wanted.v, kMaxAspect * wanted.u)};
+
+  // The aspect cap compares what the shape asks for; the face's extent only ends a step (it vanishes at a
+  // pole).
+  const double cap_u = std::min({most_u, kMaxAspect * wanted.v, extent.x * length_u});
+  const double cap_v = std::min({most_v, kMaxAspect * wanted.u, extent.y * length_v});
+  Steps mm{std::min(chord.u, cap_u), std::min(chord.v, cap_v)};
   if (limits.chord_mm < kUnlimited) {
     if (mm.u < chord.u)
-      mm.v = std::min({rest_of_budget(n, m, l, mm.u, limits.chord_mm, mm.v), most_v, kMaxAspect * mm.u});
+      mm.v = std::min(rest_of_budget(n, m, l, mm.u, limits.chord_mm, mm.v), cap_v);
     else if (mm.v < chord.v)
-      mm.u = std::min({rest_of_budget(l, m, n, mm.v, limits.chord_mm, mm.u), most_u, kMaxAspect * mm.v});
+      mm.u = std::min(rest_of_budget(l, m, n, mm.v, limits.chord_mm, mm.u), cap_u);
   }
   return {mm.u / length_u, mm.v / length_v};
 }
