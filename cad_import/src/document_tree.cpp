@@ -5,6 +5,7 @@
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_MapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -127,15 +128,25 @@ class Walker {
 std::vector<KernelBody> split_into_bodies(const TopoDS_Shape& part, const std::string& name,
                                           const std::optional<glm::dvec3>& color) {
   std::vector<KernelBody> bodies;
-  for (TopExp_Explorer it(part, TopAbs_SOLID); it.More(); it.Next())
+  TopTools_MapOfShape seen;  // a file may list a shell or the faces of a solid once more beside it
+  const auto see_all = [&seen](const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+    for (TopExp_Explorer it(shape, kind); it.More(); it.Next()) seen.Add(it.Current());
+  };
+  for (TopExp_Explorer it(part, TopAbs_SOLID); it.More(); it.Next()) {
+    if (!seen.Add(it.Current())) continue;
     bodies.push_back({name, color, true, TopLoc_Location(), it.Current()});
+    see_all(it.Current(), TopAbs_SHELL);
+  }
   for (TopExp_Explorer it(part, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next())
-    bodies.push_back({name, color, false, TopLoc_Location(), it.Current()});
+    if (seen.Add(it.Current())) bodies.push_back({name, color, false, TopLoc_Location(), it.Current()});
+  for (const KernelBody& body : bodies) see_all(body.shape, TopAbs_FACE);
+
   TopoDS_Compound loose;
   BRep_Builder builder;
   builder.MakeCompound(loose);
   bool any = false;
   for (TopExp_Explorer it(part, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
+    if (!seen.Add(it.Current())) continue;
     builder.Add(loose, it.Current());
     any = true;
   }

@@ -52,6 +52,7 @@ void read_entity_names(const Handle(XSControl_WorkSession) & session, KernelDocu
     const TopoDS_Shape shape = TransferBRep::ShapeResult(transfer, entity);
     if (shape.IsNull()) continue;
     const std::string name = decoded_step_string(item->Name()->ToCString());
+    if (name == "NONE") continue;  // what some exporters write for "no name"
     if (!face) {
       document.names.try_emplace(shape.TShape().get(), name);
       continue;

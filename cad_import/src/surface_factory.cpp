@@ -32,36 +32,6 @@ std::vector<double> flat_knots(const TColStd_Array1OfReal& sequence) {
   return {sequence.begin(), sequence.end()};
 }
 
-BSplineData bspline_data(const Handle(Geom_BSplineSurface) & original, const AffineMap& map) {
-  Handle(Geom_BSplineSurface) s = original;
-  BSplineData data;
-  if (s->IsUPeriodic() ||
-      s->IsVPeriodic()) {  // write the periodic poles out; the evaluator wraps the parameter
-    s = Handle(Geom_BSplineSurface)::DownCast(original->Copy());
-    if (s->IsUPeriodic()) {
-      data.period_u = s->UPeriod();
-      s->SetUNotPeriodic();
-    }
-    if (s->IsVPeriodic()) {
-      data.period_v = s->VPeriod();
-      s->SetVNotPeriodic();
-    }
-  }
-  data.degree_u = s->UDegree();
-  data.degree_v = s->VDegree();
-  data.pole_count_u = s->NbUPoles();
-  data.pole_count_v = s->NbVPoles();
-  data.knots_u = flat_knots(s->UKnotSequence());
-  data.knots_v = flat_knots(s->VKnotSequence());
-  const bool rational = s->IsURational() || s->IsVRational();
-  for (int i = 1; i <= data.pole_count_u; ++i)
-    for (int j = 1; j <= data.pole_count_v; ++j) {
-      data.poles.push_back(map.point(s->Pole(i, j).XYZ()));
-      if (rational) data.weights.push_back(s->Weight(i, j));
-    }
-  return data;
-}
-
 SurfaceKind kernel_kind(const Handle(Geom_Surface) & s) {
   if (s->IsKind(STANDARD_TYPE(Geom_SurfaceOfRevolution))) return SurfaceKind::revolution;
   if (s->IsKind(STANDARD_TYPE(Geom_SurfaceOfLinearExtrusion))) return SurfaceKind::extrusion;
@@ -111,6 +81,36 @@ std::shared_ptr<const ExactSurface> make_elementary(const Handle(Geom_Surface) &
 }
 
 }  // namespace
+
+BSplineData bspline_data(const Handle(Geom_BSplineSurface) & original, const AffineMap& map) {
+  Handle(Geom_BSplineSurface) s = original;
+  BSplineData data;
+  if (s->IsUPeriodic() ||
+      s->IsVPeriodic()) {  // write the periodic poles out; the evaluator wraps the parameter
+    s = Handle(Geom_BSplineSurface)::DownCast(original->Copy());
+    if (s->IsUPeriodic()) {
+      data.period_u = s->UPeriod();
+      s->SetUNotPeriodic();
+    }
+    if (s->IsVPeriodic()) {
+      data.period_v = s->VPeriod();
+      s->SetVNotPeriodic();
+    }
+  }
+  data.degree_u = s->UDegree();
+  data.degree_v = s->VDegree();
+  data.pole_count_u = s->NbUPoles();
+  data.pole_count_v = s->NbVPoles();
+  data.knots_u = flat_knots(s->UKnotSequence());
+  data.knots_v = flat_knots(s->VKnotSequence());
+  const bool rational = s->IsURational() || s->IsVRational();
+  for (int i = 1; i <= data.pole_count_u; ++i)
+    for (int j = 1; j <= data.pole_count_v; ++j) {
+      data.poles.push_back(map.point(s->Pole(i, j).XYZ()));
+      if (rational) data.weights.push_back(s->Weight(i, j));
+    }
+  return data;
+}
 
 std::shared_ptr<const ExactSurface> make_surface(const Handle(Geom_Surface) & surface, const AffineMap& map,
                                                  const ParameterRange& range, bool face_reversed) {
