@@ -12,16 +12,23 @@
 
 namespace catoptra::optics {
 
-/// How the third homogeneous coordinate is chosen, which decides what is shown *between* vertices.
+/// How the third homogeneous coordinate is chosen, which decides what is shown *between* vertices. The errors
+/// of each are in docs/decisions/0002-map-interpolation.md.
 enum class MapInterpolation {
   affine,      ///< q = 1, the paper's
   homography,  ///< q = denominator of the least-squares homography from the optic's tangent plane to the map
+  fitted,      ///< q = that of the homography from the eye's picture of the optic to the map, times the
+               ///< exponential of a quadratic chosen so that the middles of the mesh's edges show what they
+               ///< should
 };
 
-/// Homogeneous map coordinates (s q, t q, q), one per vertex; the vertex shows (s, t). q > 0.
-/// Vertices that do not face the eye get the coordinates of their direction's projection, or (0.5, 0.5, 1).
+/// Homogeneous map coordinates (s q, t q, q), one per vertex; the vertex shows (s, t). q > 0, mean 1. To be
+/// interpolated linearly over the flat triangles in space, as perspective-correct interpolation on a GPU
+/// does. Vertices that do not face the eye get (0.5, 0.5, 1). Where no denominator is positive over the whole
+/// optic, q = 1. Exact on planes at any vertex count. Throws catoptra::Error where `hits` do not belong to
+/// `optic`.
 [[nodiscard]] std::vector<glm::dvec3> map_coordinates(
     const Optic& optic, std::span<const VertexHit> hits, const VirtualView& view,
-    MapInterpolation interpolation = MapInterpolation::homography);
+    MapInterpolation interpolation = MapInterpolation::fitted);
 
 }  // namespace catoptra::optics
