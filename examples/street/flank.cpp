@@ -127,7 +127,8 @@ Model make_housing(float width_m, float height_m, float radius_m) {
     const auto power = [](float c) { return std::copysign(std::pow(std::abs(c), 2 / 4.4f), c); };
     const float x = (width_m / 2 + ring.x) * power(std::cos(angle)),
                 y = (height_m / 2 + ring.x) * power(std::sin(angle));
-    const float sag = (x * x + y * y) / (2 * radius_m);
+    const float curvature = radius_m == 0 ? 0 : 1 / radius_m, r2 = x * x + y * y;
+    const float sag = curvature * r2 / (1 + std::sqrt(1 - curvature * curvature * r2));
     return glm::vec3(x, y, -sag - ring.y);
   };
   // Seen from the glass's side the rings grow outwards: clockwise columns make the outside the front.

@@ -15,8 +15,9 @@ inline constexpr float kFlank = -0.53f;
 /// frame.
 [[nodiscard]] Model make_cabin();
 
-/// The shell behind a door mirror's glass, in the mirror's own frame (glass towards +z, width along x, height
-/// along y), for a convex glass of `radius_m`. Nothing of it lies in front of the glass's surface.
+/// The shell behind a mirror's glass, in the mirror's own frame (glass towards +z, width along x, height
+/// along y), for a spherical glass of `radius_m`: positive convex, negative concave, 0 plane. Nothing of it
+/// lies in front of the glass's surface.
 [[nodiscard]] Model make_housing(float width_m, float height_m, float radius_m);
 
 }  // namespace catoptra::examples

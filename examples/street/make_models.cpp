@@ -14,6 +14,18 @@ namespace {
 
 using namespace catoptra::examples;
 
+/// The glasses of the scenes that have a shell behind them.
+struct Housing {
+  const char* name;
+  float width_m, height_m, radius_m;
+};
+constexpr Housing kHousings[] = {
+    {"convex_300", 0.170f, 0.110f, 0.3f},    {"convex_600", 0.170f, 0.110f, 0.6f},
+    {"convex_1200", 0.170f, 0.110f, 1.2f},   {"convex_3000", 0.170f, 0.110f, 3.0f},
+    {"plane", 0.170f, 0.110f, 0.0f},         {"concave_3000", 0.170f, 0.110f, -3.0f},
+    {"concave_1200", 0.170f, 0.110f, -1.2f}, {"interior", 0.240f, 0.062f, 0.0f},
+    {"makeup", 0.170f, 0.120f, -0.8f}};
+
 void write(const std::filesystem::path& file, const Model& model, const Palette& palette) {
   const auto bytes = write_glb(model, palette, file.stem().string());
   std::ofstream out(file, std::ios::binary);
@@ -36,8 +48,9 @@ int main(int argc, char** argv) try {
   write(folder / "street.glb", make_street(), palette);
   write(folder / "flank.glb", make_flank(), palette);
   write(folder / "cabin.glb", make_cabin(), palette);
-  write(folder / "housing.glb", make_housing(0.170f, 0.110f, 1.2f), palette);
-  write(folder / "interior_housing.glb", make_housing(0.240f, 0.062f, 1e6f), palette);
+  for (const Housing& housing : kHousings)
+    write(folder / (std::string("housing_") + housing.name + ".glb"),
+          make_housing(housing.width_m, housing.height_m, housing.radius_m), palette);
   write(folder / "wall.glb", make_wall(), palette);
   return 0;
 } catch (const std::exception& error) {

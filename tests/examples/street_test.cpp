@@ -62,7 +62,7 @@ TEST(Street, LeavesTheDriversCarRoom) {
 TEST(Flank, IsLeftOfTheDriver) {
   for (const auto& [name, surface] : make_flank().surfaces)
     for (const Vertex& v : surface.vertices) {
-      EXPECT_LT(v.position.x, 0.37f) << name;  // the middle of the car
+      EXPECT_LT(v.position.x, 0.37f) << name;           // the middle of the car
       EXPECT_GT(v.position.x, kFlank - 0.05f) << name;  // handles and trim stand out by less than 5 cm
     }
 }
@@ -87,12 +87,14 @@ TEST(Flank, LeavesTheMirrorInView) {
 }
 
 TEST(Housing, StaysBehindTheGlass) {
-  constexpr float kRadius = 1.2f;
-  for (const auto& [name, surface] : make_housing(0.17f, 0.11f, kRadius).surfaces)
-    for (const Vertex& v : surface.vertices) {
-      const float r2 = v.position.x * v.position.x + v.position.y * v.position.y;
-      EXPECT_LT(v.position.z, std::sqrt(kRadius * kRadius - r2) - kRadius);
-    }
+  for (const float radius : {0.3f, 1.2f, 0.0f, -1.2f})
+    for (const auto& [name, surface] : make_housing(0.17f, 0.11f, radius).surfaces)
+      for (const Vertex& v : surface.vertices) {
+        const float r2 = v.position.x * v.position.x + v.position.y * v.position.y;
+        const float root = std::sqrt(radius * radius - r2);
+        const float glass = radius == 0 ? 0 : radius > 0 ? root - radius : -root - radius;
+        EXPECT_LT(v.position.z, glass) << "radius " << radius;
+      }
 }
 
 TEST(Panel, IsReadFromTheSideItFaces) {
