@@ -1,0 +1,126 @@
+// Usage, exit codes and the documents that the program prints about itself.
+#include <gtest/gtest.h>
+
+#include "app/version.h"
+#include "tests/app/command_runner.h"
+#include "tests/app/test_scene.h"
+
+namespace catoptra::test {
+namespace {
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::size_t lines_in(const std::string& text) {
+  return std::size_t(std::count(text.begin(), text.end(), '\n'));
+}
+
+const std::vector<std::vector<std::string>> kCommands{
+    {},         {"info"},           {"render"}, {"compare"},   {"bench"},
+    {"mirror"}, {"mirror", "make"}, {"man"},    {"completion"}};
+
+TEST(CommandLine, EveryCommandHasHelpAndVersion) {
+  for (const auto& command : kCommands) {
+    auto help = command, version = command;
+    help.push_back("--help");
+    version.push_back("--version");
+    const CommandResult helped = run_catoptra(help);
+    EXPECT_EQ(helped.code, 0);
+    EXPECT_TRUE(holds(helped.output, "--log-level")) << helped.output;
+    EXPECT_EQ(run_catoptra(version).output, "catoptra " + std::string(app::version()) + "\n");
+  }
+}
+
+TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
+  const std::vector<std::vector<std::string>> wrong{
+      {},
+      {"nonsense"},
+      {"render"},
+      {"render", "scene.toml"},
+      {"render", "scene.toml", "-o", "x.png", "--samples", "0"},
+      {"render", "scene.toml", "-o", "x.png", "--mode", "exact"},
+      {"render", "scene.toml", "-o", "x.png", "--mode", "auto"},
+      {"render", "scene.toml", "-o", "x.png", "--mode", "pvr"},
+      {"render", "scene.toml", "-o", "x.png", "--overlay", "patches"},
+      {"render", "scene.toml", "-o", "x.png", "--resolution", "12"},
+      {"compare", "scene.toml", "-o", "out", "--modes", "pvrr,exact"},
+      {"compare", "scene.toml", "-o", "out", "--modes", "raytrace"},
+      {"bench", "scene.toml", "--frames", "none"},
+      {"info"},
+      {"info", "x.step", "--no-such-option"},
+      {"mirror"},
+      {"mirror", "evaluate", "scene.toml"},
+      {"mirror", "make", "--radius", "100", "--radius-h", "100", "--radius-v", "90", "-o", "m.step"},
+      {"lens", "make", "--sph", "-2", "-o", "l.step"},
+      {"batch", "run", "plan.toml"},
+      {"completion", "csh"},
+  };
+  for (const auto& arguments : wrong) {
+    const CommandResult result = run_catoptra(arguments);
+    std::string line;
+    for (const std::string& argument : arguments) line += argument + " ";
+    EXPECT_EQ(result.code, 2) << line << result.errors;
+    EXPECT_EQ(lines_in(result.errors), 1u) << line << result.errors;
+    EXPECT_EQ(result.errors.rfind("catoptra: ", 0), 0u) << line << result.errors;
+  }
+}
+
+TEST(CommandLine, WhatIsNotInThisVersionSaysSo) {
+  EXPECT_TRUE(holds(run_catoptra({"lens", "evaluate", "x.step"}).errors, "not in this version"));
+  EXPECT_TRUE(holds(run_catoptra({"render", "s.toml", "-o", "x.png", "--mode", "auto"}).errors,
+                    "not in this version"));
+}
+
+TEST(CommandLine, SceneErrorsNameFileLineAndKeyAndExitWith1) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("bad.toml", "[camera]\nfov = 3\n").string();
+  const CommandResult result = run_catoptra({"render", scene, "-o", (folder / "x.png").string()});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.errors.rfind("catoptra: " + scene + ": line 2, camera.fov: unknown key", 0), 0u)
+      << result.errors;
+  EXPECT_EQ(lines_in(result.errors), 1u);
+  EXPECT_EQ(run_catoptra({"render", (folder / "no.toml").string(), "-o", (folder / "x.png").string()}).code,
+            1);
+}
+
+TEST(CommandLine, ResultsThatCannotBeWrittenAreErrors) {
+  const TemporaryFolder folder;
+  const auto mirror = write_test_mirror(folder, 400).string();
+  EXPECT_EQ(run_catoptra({"mirror", "make", "-o", (folder / "no/folder/m.step").string()}).code, 1);
+  EXPECT_EQ(run_catoptra({"render", "scene.toml", "-o", (folder / "x.jpeg").string()}).code, 1);
+}
+
+TEST(CommandLine, ManualPageNamesEveryCommandAndOption) {
+  const CommandResult result = run_catoptra({"man"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.output.rfind(".TH CATOPTRA 1", 0), 0u);
+  for (const char* part :
+       {"catoptra render", "catoptra mirror make", "\\-\\-max\\-error\\-arcmin", ".SH EXIT STATUS"})
+    EXPECT_TRUE(holds(result.output, part)) << part;
+}
+
+TEST(CommandLine, CompletionScriptsKnowTheCommands) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    const CommandResult result = run_catoptra({"completion", shell});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_TRUE(holds(result.output, "compare")) << shell;
+    EXPECT_TRUE(holds(result.output, "max-error-arcmin")) << shell;
+  }
+}
+
+/// The bash script, run by bash: what completes "catoptra mirror make --radius".
+TEST(CommandLine, BashCompletesOptionsOfTheCommandTyped) {
+  const TemporaryFolder folder;
+  folder.write("complete.bash", run_catoptra({"completion", "bash"}).output +
+                                    "COMP_WORDS=(catoptra mirror make --radius-)\nCOMP_CWORD=3\n_catoptra\n"
+                                    "printf '%s\\n' \"${COMPREPLY[@]}\"\n");
+  const std::string output = (folder / "out").string();
+  const std::string line =
+      "bash " + shell_quoted((folder / "complete.bash").string()) + " >" + shell_quoted(output);
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  EXPECT_EQ(read_file(output), "--radius-h\n--radius-v\n");
+}
+
+}  // namespace
+}  // namespace catoptra::test
