@@ -163,8 +163,8 @@ double near_beyond_viewpoint(const VirtualView& view, const Bundle& bundle, std:
     const double depth = glm::dot(hit.hit_point_mm - view.viewpoint_mm, view.direction);
     if (hit.scene_hit && depth > 0) nearest_hit = std::min(nearest_hit, depth);
   }
-  const double half_wider = miss / std::max(0.5 * slope, 1e-9);
-  return std::max({1.0, miss, std::min(half_wider, 0.5 * nearest_hit)});
+  const double wider = miss / std::max(0.25 * slope, 1e-9);
+  return std::max({1.0, miss, std::min(wider, 0.5 * nearest_hit)});
 }
 
 // Holds the part of each ray beyond the near plane: a segment projects to the segment between its ends.

@@ -18,7 +18,8 @@ TEST(Reflect, MirrorsTheNormalComponent) {
   EXPECT_NEAR(r.z, -d.z, 1e-15);
 }
 
-// Values derived independently by finite differences of traced rays, to 1e-6: eye distance, radius, incidence.
+// Values derived independently by finite differences of traced rays, to 1e-6: eye distance, radius,
+// incidence.
 TEST(MirrorMagnification, ConvexMirrorGoldens) {
   const auto check = [](double a, double r, double b_deg, double mt, double ms) {
     const auto m = mirror_magnification(a, r, glm::radians(b_deg));
