@@ -20,51 +20,106 @@ constexpr int kLanes = MirrorLanes::kLanes;
 constexpr double kEnlarged =
     1.15;  // samples reach this far beyond the triangle: exact hits may lie just outside
 
-/// Two lanes' worth of doubles is what every x86-64 has; wider units run several of these at once.
-using Double4 = double __attribute__((vector_size(32)));
+/// Compiled for wider vector units too, the best of which is chosen when the program is loaded. The results
+/// are the same on all: no operation is contracted or reordered. (Sanitizers cannot run the code that
+/// chooses.)
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#define CATOPTRA_VECTOR_CLONES [[gnu::target_clones("default", "avx2", "avx512f")]]
+#else
+#define CATOPTRA_VECTOR_CLONES
+#endif
 
-/// Height and slopes at (x, y) by Horner's scheme in both variables.
-template <typename Number>
 struct Height {
-  Number value, dx, dy;
+  double value, dx, dy;
 };
 
-template <typename Number>
-[[gnu::always_inline]] inline void evaluate(const double* c, const Number& x, const Number& y,
-                                            Height<Number>& out) {
-  // Rows by power of y: 6, 5, 4, 3, 2, 1 coefficients. Unrolled, so that all stays in registers.
-  const Number p5 = Number{} + c[20];
-  const Number p4 = c[18] + x * c[19], p4x = Number{} + c[19];
-  const Number p3 = c[15] + x * (c[16] + x * c[17]), p3x = c[16] + x * (2 * c[17]);
-  const Number p2 = c[11] + x * (c[12] + x * (c[13] + x * c[14])),
+/// Height and slopes at (x, y) by Horner's scheme in both variables; without loops, so that the compiler can
+/// run it for several rays at once. `c` by power of y: 6, 5, 4, 3, 2, 1 coefficients.
+[[gnu::always_inline]] inline Height evaluate(const double* c, double x, double y) {
+  const double p4 = c[18] + x * c[19];
+  const double p3 = c[15] + x * (c[16] + x * c[17]), p3x = c[16] + x * (2 * c[17]);
+  const double p2 = c[11] + x * (c[12] + x * (c[13] + x * c[14])),
                p2x = c[12] + x * (2 * c[13] + x * (3 * c[14]));
-  const Number p1 = c[6] + x * (c[7] + x * (c[8] + x * (c[9] + x * c[10])));
-  const Number p1x = c[7] + x * (2 * c[8] + x * (3 * c[9] + x * (4 * c[10])));
-  const Number p0 = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
-  const Number p0x = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * (5 * c[5]))));
-  out.value = p0 + y * (p1 + y * (p2 + y * (p3 + y * (p4 + y * p5))));
-  out.dx = p0x + y * (p1x + y * (p2x + y * (p3x + y * p4x)));
-  out.dy = p1 + y * (2.0 * p2 + y * (3.0 * p3 + y * (4.0 * p4 + y * (5.0 * p5))));
+  const double p1 = c[6] + x * (c[7] + x * (c[8] + x * (c[9] + x * c[10])));
+  const double p1x = c[7] + x * (2 * c[8] + x * (3 * c[9] + x * (4 * c[10])));
+  const double p0 = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  const double p0x = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * (5 * c[5]))));
+  return {p0 + y * (p1 + y * (p2 + y * (p3 + y * (p4 + y * c[20])))),
+          p0x + y * (p1x + y * (p2x + y * (p3x + y * c[19]))),
+          p1 + y * (2 * p2 + y * (3 * p3 + y * (4 * p4 + y * (5 * c[20]))))};
 }
 
-/// What reflection does to a spherical wave from the eye (generalised Coddington for a mirror; Landgrave and
-/// Moya-Cessa 1996): with the surface's curvatures a in the plane of incidence, b across it and their mixed
-/// term m, incidence cosine c, the reflected wavefront has [w + 2 a / c, 2 m; 2 m, w + 2 b c], w = 1 /
-/// distance.
-struct Incidence {
-  double across;         ///< b times sine^2 of incidence
-  double sine2;          ///< of the angle of incidence, squared
-  double cosine;         ///< > 0
-  bool from_behind;      ///< the ray comes from the side that the normal points away from
-  double sum, gaussian;  ///< a + b, a b - m^2
+/// What reflection does to a spherical wave from the eye at `distance` (generalised Coddington for a mirror;
+/// Landgrave and Moya-Cessa 1996). With the surface's curvatures a in the plane of incidence, b across it,
+/// their mixed term m and the incidence cosine c, the reflected wavefront is [w + 2 a / c, 2 m; 2 m, w + 2 b
+/// c], w = 1 / distance.
+struct Wave {
+  double sum, product;  ///< of its principal curvatures
 };
 
-inline void set_wavefront(const Incidence& at, int lane, MirrorLanes& lanes) {
-  const double side = at.from_behind ? -1 : 1;
-  const double b = side * (at.sine2 > 1e-9 ? at.across / at.sine2 : 0.5 * at.sum), a = side * at.sum - b;
-  const double w = 1 / lanes.distance[lane], added = 2 * (a / at.cosine + b * at.cosine);
-  lanes.wave_sum[lane] = 2 * w + added;
-  lanes.wave_product[lane] = w * w + w * added + 4 * at.gaussian;
+/// `across`: b sin^2 of incidence; `cosine`: of ray and normal, > 0 where the ray comes from behind;
+/// `curvature_sum`: a + b; `gaussian`: a b - m^2.
+[[gnu::always_inline]] inline Wave reflected_wave(double across, double cosine, double curvature_sum,
+                                                  double gaussian, double distance) {
+  const double sine2 = 1 - cosine * cosine, c = std::abs(cosine) > 1e-6 ? std::abs(cosine) : 1e-6;
+  const double b = sine2 > 1e-9 ? across / sine2 : 0.5 * curvature_sum, a = curvature_sum - b;
+  const double w = 1 / distance, added = (cosine > 0 ? -2 : 2) * (a / c + b * c);
+  return {2 * w + added, w * w + w * added + 4 * gaussian};
+}
+
+/// A patch and an eye as the rays' arithmetic needs them.
+struct PatchRays {
+  glm::dvec3 eye_mm;
+  glm::dvec3 eye;                  ///< in the patch's coordinates (b1, b2, height)
+  glm::dvec3 g1, g2, n, g1n, g2n;  ///< dual basis; g1 x n, g2 x n
+  double h11, h12, h22, curvature_sum, gaussian;
+  const double* c;
+};
+
+struct alignas(64) PatchHits {
+  MirrorRays rays;
+  double miss[kLanes];  ///< mm between ray and surface after the last step
+};
+
+constexpr double kConverged = 1e-9;  // mm
+
+/// All lanes against one patch. Newton in the distance t alone, from the triangle's plane: the error squares
+/// from the chord height (0.1 mm) to 1e-6 to 1e-15 mm. Then r = d - 2 (d . n) n / n^2 at the polynomial's own
+/// normal.
+CATOPTRA_VECTOR_CLONES void hit_patch(const PatchRays& p, const MirrorLanes& lanes, PatchHits& hits) {
+  const double eye_x = p.eye.x, eye_y = p.eye.y, eye_z = p.eye.z;
+  const glm::dvec3 eye_mm = p.eye_mm, g1 = p.g1, g2 = p.g2, n = p.n, g1n = p.g1n, g2n = p.g2n;
+  const double h11 = p.h11, h12 = p.h12, h22 = p.h22, sum = p.curvature_sum, gaussian = p.gaussian;
+  double c[21];  // a copy, so that no store into `hits` can be thought to change it
+  std::copy(p.c, p.c + 21, c);
+  for (int i = 0; i < kLanes; ++i) {
+    const double wx = lanes.direction_x[i], wy = lanes.direction_y[i], wz = lanes.direction_z[i];
+    const double dx = g1.x * wx + g1.y * wy + g1.z * wz, dy = g2.x * wx + g2.y * wy + g2.z * wz;
+    const double dz = n.x * wx + n.y * wy + n.z * wz;
+    const double t0 = -eye_z / dz;
+    const Height h0 = evaluate(c, eye_x + t0 * dx, eye_y + t0 * dy);
+    const double t1 = t0 - ((eye_z + t0 * dz) - h0.value) / (dz - h0.dx * dx - h0.dy * dy);
+    const Height h1 = evaluate(c, eye_x + t1 * dx, eye_y + t1 * dy);
+    const double t2 = t1 - ((eye_z + t1 * dz) - h1.value) / (dz - h1.dx * dx - h1.dy * dy);
+    const Height h = evaluate(c, eye_x + t2 * dx, eye_y + t2 * dy);
+    const double nx = n.x - h.dx * g1.x - h.dy * g2.x, ny = n.y - h.dx * g1.y - h.dy * g2.y;
+    const double nz = n.z - h.dx * g1.z - h.dy * g2.z;
+    const double twice = 2 * (wx * nx + wy * ny + wz * nz) / (nx * nx + ny * ny + nz * nz);
+    hits.miss[i] = (eye_z + t2 * dz) - h.value;
+    hits.rays.distance[i] = t2;
+    hits.rays.surface_x[i] = eye_mm.x + t2 * wx;
+    hits.rays.surface_y[i] = eye_mm.y + t2 * wy;
+    hits.rays.surface_z[i] = eye_mm.z + t2 * wz;
+    hits.rays.reflected_x[i] = wx - twice * nx;
+    hits.rays.reflected_y[i] = wy - twice * ny;
+    hits.rays.reflected_z[i] = wz - twice * nz;
+    // Components of n x d in (b1, b2): the normal curvature in that direction, times its squared length.
+    const double s1 = g1n.x * wx + g1n.y * wy + g1n.z * wz, s2 = g2n.x * wx + g2n.y * wy + g2n.z * wz;
+    const Wave wave =
+        reflected_wave(-(h11 * s1 * s1 + 2 * h12 * s1 * s2 + h22 * s2 * s2), dz, sum, gaussian, t2);
+    hits.rays.wave_sum[i] = wave.sum;
+    hits.rays.wave_product[i] = wave.product;
+  }
 }
 
 }  // namespace
@@ -170,8 +225,7 @@ struct PatchBuilder {
     for (const glm::dvec2& b : kChecks) {
       const auto exact = sample(patch, surface, start_uv(t, b), b);
       if (!exact) return false;
-      Height<double> fit;
-      evaluate(patch.c, b.x, b.y, fit);
+      const Height fit = evaluate(patch.c, b.x, b.y);
       const glm::dvec3 normal = glm::normalize(patch.normal - fit.dx * patch.g1 - fit.dy * patch.g2);
       if (!(std::abs(fit.value - exact->height) < kHeightTolerance)) return false;
       if (!(glm::length(normal - exact->normal) < kSlopeTolerance)) return false;
@@ -183,11 +237,8 @@ struct PatchBuilder {
   /// nearly tangent).
   static void set_curvatures(Patch& p) {
     const double x = 1 / 3.0, step = 1e-3;
-    Height<double> right, left, up, down;
-    evaluate(p.c, x + step, x, right);
-    evaluate(p.c, x - step, x, left);
-    evaluate(p.c, x, x + step, up);
-    evaluate(p.c, x, x - step, down);
+    const Height right = evaluate(p.c, x + step, x), left = evaluate(p.c, x - step, x);
+    const Height up = evaluate(p.c, x, x + step), down = evaluate(p.c, x, x - step);
     p.h11 = (right.dx - left.dx) / (2 * step);
     p.h12 = (right.dy - left.dy) / (2 * step);
     p.h22 = (up.dy - down.dy) / (2 * step);
@@ -257,56 +308,33 @@ void ExactMirror::reflect(const glm::dvec3& eye_mm, MirrorLanes& lanes) const {
 void ExactMirror::reflect_on_patch(const Patch& patch, const glm::dvec3& eye_mm, const bool (&chosen)[kLanes],
                                    MirrorLanes& lanes, bool (&solved)[kLanes]) const {
   const glm::dvec3 offset = eye_mm - patch.corner;
-  const double ox = glm::dot(patch.g1, offset), oy = glm::dot(patch.g2, offset),
-               oz = glm::dot(patch.normal, offset);
-  const glm::dvec3 &g1 = patch.g1, &g2 = patch.g2, &n = patch.normal;
-  for (int first = 0; first < kLanes; first += 4) {
-    if (!(chosen[first] || chosen[first + 1] || chosen[first + 2] || chosen[first + 3])) continue;
-    Double4 wx, wy,
-        wz;  // loaded by copy: a function returning such a vector would depend on the processor's ABI
-    std::memcpy(&wx, &lanes.direction_x[first], sizeof wx);
-    std::memcpy(&wy, &lanes.direction_y[first], sizeof wy);
-    std::memcpy(&wz, &lanes.direction_z[first], sizeof wz);
-    const Double4 dx = g1.x * wx + g1.y * wy + g1.z * wz, dy = g2.x * wx + g2.y * wy + g2.z * wz;
-    const Double4 dz = n.x * wx + n.y * wy + n.z * wz;
-    // Newton in the distance t alone, from the triangle's plane. The error squares from the chord (0.1 mm) to
-    // 1e-6 to 1e-15.
-    Double4 t = -oz / dz, miss{};
-    Height<Double4> h{};
-    for (int step = 0; step < 3; ++step) {
-      evaluate<Double4>(patch.c, ox + t * dx, oy + t * dy, h);
-      miss = (oz + t * dz) - h.value;
-      if (step < 2) t = t - miss / (dz - h.dx * dx - h.dy * dy);
-    }
-    Double4 nx = n.x - h.dx * g1.x - h.dy * g2.x, ny = n.y - h.dx * g1.y - h.dy * g2.y,
-            nz = n.z - h.dx * g1.z - h.dy * g2.z;
-    const Double4 squared = nx * nx + ny * ny + nz * nz, across = wx * nx + wy * ny + wz * nz;
-    const Double4 twice = 2 * across / squared;  // r = d - 2 (d . n) n / n^2
-    const Double4 rx = wx - twice * nx, ry = wy - twice * ny, rz = wz - twice * nz;
-    // Normal curvature across the plane of incidence: along e = n x d / |n x d|, with g_i . (n x d) by
-    // components.
-    const Double4 s1 =
-        (g1.y * n.z - g1.z * n.y) * wx + (g1.z * n.x - g1.x * n.z) * wy + (g1.x * n.y - g1.y * n.x) * wz;
-    const Double4 s2 =
-        (g2.y * n.z - g2.z * n.y) * wx + (g2.z * n.x - g2.x * n.z) * wy + (g2.x * n.y - g2.y * n.x) * wz;
-    for (int k = 0; k < 4; ++k) {
-      const int i = first + k;
-      if (!chosen[i] || !(std::abs(miss[k]) < 1e-9) || !(t[k] > 0))
-        continue;  // mm; else the iteration has not converged
-      solved[i] = true;
-      lanes.distance[i] = t[k];
-      lanes.surface_x[i] = eye_mm.x + t[k] * wx[k];
-      lanes.surface_y[i] = eye_mm.y + t[k] * wy[k];
-      lanes.surface_z[i] = eye_mm.z + t[k] * wz[k];
-      lanes.reflected_x[i] = rx[k];
-      lanes.reflected_y[i] = ry[k];
-      lanes.reflected_z[i] = rz[k];
-      const double cosine = std::abs(dz[k]), sine2 = 1 - cosine * cosine;
-      const double curved =
-          -(patch.h11 * s1[k] * s1[k] + 2 * patch.h12 * s1[k] * s2[k] + patch.h22 * s2[k] * s2[k]);
-      set_wavefront({curved, sine2, cosine, dz[k] > 0, patch.curvature_sum, patch.gaussian}, i, lanes);
-    }
+  const PatchRays rays{
+      eye_mm,
+      {glm::dot(patch.g1, offset), glm::dot(patch.g2, offset), glm::dot(patch.normal, offset)},
+      patch.g1,
+      patch.g2,
+      patch.normal,
+      glm::cross(patch.g1, patch.normal),
+      glm::cross(patch.g2, patch.normal),
+      patch.h11,
+      patch.h12,
+      patch.h22,
+      patch.curvature_sum,
+      patch.gaussian,
+      patch.c};
+  PatchHits hits;
+  hit_patch(rays, lanes, hits);
+  bool all = true;
+  for (int i = 0; i < kLanes; ++i) {
+    solved[i] = chosen[i] && std::abs(hits.miss[i]) < kConverged && hits.rays.distance[i] > 0;
+    all = all && solved[i];
   }
+  if (all) {
+    lanes.out = hits.rays;
+    return;
+  }
+  for (int i = 0; i < kLanes; ++i)
+    if (solved[i]) lanes.out.copy_lane(hits.rays, i);
 }
 
 void ExactMirror::reflect_by_newton(const Patch& patch, const glm::dvec3& eye_mm, int lane,
@@ -330,20 +358,22 @@ void ExactMirror::reflect_by_newton(const Patch& patch, const glm::dvec3& eye_mm
     normal = glm::normalize(w * vertex(0).normal + u * vertex(1).normal + v * vertex(2).normal);
   }
   const glm::dvec3 reflected = optics::reflect(direction, normal);
-  lanes.surface_x[lane] = position.x;
-  lanes.surface_y[lane] = position.y;
-  lanes.surface_z[lane] = position.z;
-  lanes.reflected_x[lane] = reflected.x;
-  lanes.reflected_y[lane] = reflected.y;
-  lanes.reflected_z[lane] = reflected.z;
-  lanes.distance[lane] = glm::length(position - eye_mm);
+  const double distance = glm::length(position - eye_mm);
   const glm::dvec3 across = glm::cross(normal, direction);
   const double s1 = glm::dot(patch.g1, across), s2 = glm::dot(patch.g2, across);
-  const double curved = -(patch.h11 * s1 * s1 + 2 * patch.h12 * s1 * s2 + patch.h22 * s2 * s2);
-  const double cosine = glm::dot(normal, direction);
-  set_wavefront({curved, glm::dot(across, across), std::max(std::abs(cosine), 1e-6), cosine > 0,
-                 patch.curvature_sum, patch.gaussian},
-                lane, lanes);
+  const Wave wave =
+      reflected_wave(-(patch.h11 * s1 * s1 + 2 * patch.h12 * s1 * s2 + patch.h22 * s2 * s2),
+                     glm::dot(normal, direction), patch.curvature_sum, patch.gaussian, distance);
+  MirrorRays& out = lanes.out;
+  out.surface_x[lane] = position.x;
+  out.surface_y[lane] = position.y;
+  out.surface_z[lane] = position.z;
+  out.reflected_x[lane] = reflected.x;
+  out.reflected_y[lane] = reflected.y;
+  out.reflected_z[lane] = reflected.z;
+  out.distance[lane] = distance;
+  out.wave_sum[lane] = wave.sum;
+  out.wave_product[lane] = wave.product;
 }
 
 }  // namespace catoptra::render

@@ -21,21 +21,39 @@ inline constexpr double kHeightTolerance =
     1e-8;  ///< mm; 1/1000 of what a float holds of a coordinate of 100 mm
 inline constexpr double kSlopeTolerance = 1e-9;  ///< rad; 1/60 of what a float holds of a unit direction
 
-/// Rays from one eye that hit the mesh of one optic, and what becomes of them. Structure of arrays.
-struct alignas(64) MirrorLanes {
+/// Rays as a mirror sends them on. Structure of arrays.
+struct alignas(64) MirrorRays {
   static constexpr int kLanes = 16;
-  // In.
-  bool active[kLanes];
-  double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit
-  std::uint32_t triangle[kLanes];                                        ///< of the optic's mesh
-  float u[kLanes], v[kLanes];  ///< weights of its second and third vertex
-  // Out, for active lanes.
   double surface_x[kLanes], surface_y[kLanes], surface_z[kLanes];        ///< exact hit, mm
   double reflected_x[kLanes], reflected_y[kLanes], reflected_z[kLanes];  ///< unit
   double distance[kLanes];                                               ///< eye to hit, mm
   /// Sum and product of the principal curvatures of the reflected wavefront at the hit, 1/mm and 1/mm^2, for
   /// a spherical wave from the eye; diverging positive.
   double wave_sum[kLanes], wave_product[kLanes];
+
+  void copy_lane(const MirrorRays& from, int lane) {
+    surface_x[lane] = from.surface_x[lane];
+    surface_y[lane] = from.surface_y[lane];
+    surface_z[lane] = from.surface_z[lane];
+    reflected_x[lane] = from.reflected_x[lane];
+    reflected_y[lane] = from.reflected_y[lane];
+    reflected_z[lane] = from.reflected_z[lane];
+    distance[lane] = from.distance[lane];
+    wave_sum[lane] = from.wave_sum[lane];
+    wave_product[lane] = from.wave_product[lane];
+  }
+};
+
+/// Rays from one eye that hit the mesh of one optic, and what becomes of them.
+struct alignas(64) MirrorLanes {
+  static constexpr int kLanes = MirrorRays::kLanes;
+  // In. Directions must be ordinary numbers in every lane, active or not.
+  bool active[kLanes];
+  double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit
+  std::uint32_t triangle[kLanes];                                        ///< of the optic's mesh
+  float u[kLanes], v[kLanes];  ///< weights of its second and third vertex
+  // Out, for active lanes.
+  MirrorRays out;
 };
 
 class ExactMirror {

@@ -58,9 +58,8 @@ void PacketTracer::primary(const CameraRays& camera, const PixelPacket& pixels, 
   rays_.intersect16(p.first, optics::kEverything, true);
 }
 
-/// Finds the lanes that show a reflecting side; hits and reflects them exactly, and queries the reflected
-/// rays.
-void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
+/// Finds the lanes that show a reflecting side. Returns whether there are any.
+bool PacketTracer::find_mirrors(Packet& p) const {
   const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
   p.any_mirror = false;
   for (int i = 0; i < kLanes; ++i) {
@@ -74,16 +73,27 @@ void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
     if ((facing < 0) == scene_.optics[std::size_t(optic)].flip) continue;
     p.optic[i] = optic;
     p.any_mirror = true;
-    const glm::dvec3 d = camera.direction(p.column[i], p.row[i]);
-    p.stretch[i] = glm::length(d);
-    p.mirror.direction_x[i] = d.x / p.stretch[i];
-    p.mirror.direction_y[i] = d.y / p.stretch[i];
-    p.mirror.direction_z[i] = d.z / p.stretch[i];
     p.mirror.triangle[i] = p.first.triangle[i];
     p.mirror.u[i] = p.first.u[i];
     p.mirror.v[i] = p.first.v[i];
   }
-  if (!p.any_mirror) return;
+  return p.any_mirror;
+}
+
+/// Hits and reflects exactly where a mirror shows, and queries the reflected rays.
+void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
+  if (!find_mirrors(p)) return;
+  const glm::dvec3 corner = camera.corner, dx = camera.dx, dy = camera.dy;
+  for (int i = 0; i < kLanes; ++i) {
+    const double x = corner.x + p.column[i] * dx.x + p.row[i] * dy.x,
+                 y = corner.y + p.column[i] * dx.y + p.row[i] * dy.y;
+    const double z = corner.z + p.column[i] * dx.z + p.row[i] * dy.z,
+                 length = std::sqrt(x * x + y * y + z * z);
+    p.stretch[i] = length;
+    p.mirror.direction_x[i] = x / length;
+    p.mirror.direction_y[i] = y / length;
+    p.mirror.direction_z[i] = z / length;
+  }
   for (std::size_t optic = 0; optic < mirrors_.size(); ++optic) {
     bool any = false;
     for (int i = 0; i < kLanes; ++i) any |= p.mirror.active[i] = p.optic[i] == int(optic);
@@ -96,21 +106,18 @@ void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
     rays_.intersect16(p.second, optics::kSurroundings, true);
 }
 
-void PacketTracer::load_reflected(Packet& p) const {
-  // Lanes that show no mirror repeat one that does: their values are never looked at, but must be ordinary
-  // numbers.
-  int any = 0;
-  while (p.optic[any] < 0) ++any;
+void PacketTracer::load_reflected(Packet& p) {
+  const MirrorRays& rays = p.mirror.out;
   for (int i = 0; i < kLanes; ++i) {
-    const int from = p.optic[i] >= 0 ? i : any;
-    p.second.origin_x[i] = float(p.mirror.surface_x[from]);
-    p.second.origin_y[i] = float(p.mirror.surface_y[from]);
-    p.second.origin_z[i] = float(p.mirror.surface_z[from]);
-    p.second.direction_x[i] = float(p.mirror.reflected_x[from]);
-    p.second.direction_y[i] = float(p.mirror.reflected_y[from]);
-    p.second.direction_z[i] = float(p.mirror.reflected_z[from]);
+    const bool active = p.optic[i] >= 0;
+    p.second.origin_x[i] = active ? float(rays.surface_x[i]) : 0;
+    p.second.origin_y[i] = active ? float(rays.surface_y[i]) : 0;
+    p.second.origin_z[i] = active ? float(rays.surface_z[i]) : 0;
+    p.second.direction_x[i] = active ? float(rays.reflected_x[i]) : 1;
+    p.second.direction_y[i] = active ? float(rays.reflected_y[i]) : 1;
+    p.second.direction_z[i] = active ? float(rays.reflected_z[i]) : 1;
     p.second.t_min[i] = 0;
-    p.second.t_max[i] = p.optic[i] >= 0 ? std::numeric_limits<float>::infinity() : -1.0f;
+    p.second.t_max[i] = active ? std::numeric_limits<float>::infinity() : -1.0f;
   }
 }
 
@@ -170,8 +177,8 @@ void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
   for (int i = 0; i < kLanes; ++i) {
     if (p.optic[i] < 0) continue;
     take(p.second, i);
-    const double depth = p.mirror.distance[i] / p.stretch[i], s = p.second.t_max[i];
-    const double spread = std::abs(1 + s * (p.mirror.wave_sum[i] + s * p.mirror.wave_product[i]));
+    const double depth = p.mirror.out.distance[i] / p.stretch[i], s = p.second.t_max[i];
+    const double spread = std::abs(1 + s * (p.mirror.out.wave_sum[i] + s * p.mirror.out.wave_product[i]));
     p.shade.footprint[i] = float(camera.pixel * camera.pixel * depth * depth / p.stretch[i] * spread);
   }
 }
@@ -216,8 +223,8 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
     const optics::RayPacket16& last = mirrored ? p.second : p.first;
     glm::dvec3 origin = camera.eye_mm, direction = camera.direction(p.column[i], p.row[i]);
     if (mirrored) {
-      origin = {p.mirror.surface_x[i], p.mirror.surface_y[i], p.mirror.surface_z[i]};
-      direction = {p.mirror.reflected_x[i], p.mirror.reflected_y[i], p.mirror.reflected_z[i]};
+      origin = {p.mirror.out.surface_x[i], p.mirror.out.surface_y[i], p.mirror.out.surface_z[i]};
+      direction = {p.mirror.out.reflected_x[i], p.mirror.out.reflected_y[i], p.mirror.out.reflected_z[i]};
     }
     const bool sky = last.object[i] == optics::kNoHit;
     frame.position[at] = sky ? glm::vec4(glm::vec3(glm::normalize(direction)), 0)

@@ -50,7 +50,8 @@ class PacketTracer {
 
   void primary(const CameraRays& camera, const PixelPacket& pixels, glm::dvec2 offset, Packet& p) const;
   void reflect(const CameraRays& camera, Packet& p) const;
-  void load_reflected(Packet& p) const;
+  bool find_mirrors(Packet& p) const;
+  static void load_reflected(Packet& p);
   void query_skipping_own_optic(Packet& p) const;
   void set_hits(const CameraRays& camera, Packet& p) const;
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
