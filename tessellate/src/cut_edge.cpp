@@ -11,7 +11,7 @@ namespace {
 constexpr double kCellLength =
     1.2;  // longest piece, in cells: a little more than 1 saves vertices, not quality
 constexpr double kUvFlatness = 0.1;  // of a cell, between the straight piece and the curve in (u, v)
-constexpr int kMaxDepth = 16;
+constexpr int kMaxDepth = 10;
 constexpr std::size_t kMostUses = 4;  // that are looked at: an edge has one or two, rarely more
 
 /// A point of the edge: in space, and in the cells of the faces at it.

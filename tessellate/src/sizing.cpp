@@ -9,9 +9,11 @@ namespace {
 
 using cad_import::ExactSurface;
 
-constexpr int kIntervals = 8;         // per direction, at whose ends the surface is sampled
-constexpr double kMaxAspect = 8;      // a cell's longer side over its shorter one
-constexpr double kDegenerate = 1e-9;  // |du x dv| / (|du| |dv|) below which a sample says nothing
+constexpr int kIntervals = 8;        // per direction, at whose ends the surface is sampled
+constexpr double kMaxAspect = 8;     // a cell's longer side over its shorter one
+constexpr double kParallel = 1e-9;   // |du x dv| / (|du| |dv|) below which a sample says nothing
+constexpr double kCollapsed = 1e-4;  // of the longest |du|: a pole, where second derivatives per mm are noise
+constexpr double kProminent = 4;     // medians: what stands out further is left to local refinement
 
 /// Largest admissible steps at one point, in mm or in parameter units.
 struct Steps {
@@ -49,7 +51,7 @@ Steps steps_at(const cad_import::SurfaceDerivatives& s, const glm::dvec2& extent
   const double length_u = glm::length(s.du), length_v = glm::length(s.dv);
   const glm::dvec3 cross = glm::cross(s.du, s.dv);
   const double area = glm::length(cross);
-  if (!(area > kDegenerate * length_u * length_v)) return {};
+  if (!(area > kParallel * length_u * length_v)) return {};
   const glm::dvec3 normal = cross / area;
   // Second fundamental form per mm in both directions.
   const double l = std::abs(glm::dot(s.duu, normal)) / (length_u * length_u);
@@ -80,6 +82,13 @@ Steps steps_at(const cad_import::SurfaceDerivatives& s, const glm::dvec2& extent
       mm.u = std::min(rest_of_budget(l, m, n, mm.v, limits.chord_mm, mm.u), cap_u);
   }
   return {mm.u / length_u, mm.v / length_v};
+}
+
+/// The largest value, but at most kProminent medians.
+double prominent(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return std::min(values.back(), kProminent * values[values.size() / 2]);
 }
 
 }  // namespace
@@ -114,17 +123,30 @@ FaceSizing size_face(const ExactSurface& surface, const UvBox& box, const StepLi
     return {box, CellCount(box.min.x, box.max.x, {columns / extent.x}),
             CellCount(box.min.y, box.max.y, {rows / extent.y})};
   }
-  std::array<double, kIntervals + 1> node_u{}, node_v{};  // densities
-  node_u.fill(1 / extent.x);
-  node_v.fill(1 / extent.y);
-  for (std::size_t j = 0; j <= kIntervals; ++j)
-    for (std::size_t i = 0; i <= kIntervals; ++i) {
-      const double u = box.min.x + extent.x * static_cast<double>(i) / kIntervals;
-      const double v = box.min.y + extent.y * static_cast<double>(j) / kIntervals;
-      const Steps steps = steps_at(surface.d2(u, v), extent, limits);
-      node_u[i] = std::max(node_u[i], 1 / steps.u);
-      node_v[j] = std::max(node_v[j], 1 / steps.v);
-    }
+  constexpr std::size_t kNodes = kIntervals + 1;
+  std::vector<cad_import::SurfaceDerivatives> samples;
+  double longest_u = 0, longest_v = 0;
+  for (std::size_t k = 0; k < kNodes * kNodes; ++k) {
+    const glm::dvec2 share(static_cast<double>(k % kNodes) / kIntervals,
+                           static_cast<double>(k / kNodes) / kIntervals);
+    const glm::dvec2 uv = box.min + share * extent;
+    samples.push_back(surface.d2(uv.x, uv.y));
+    longest_u = std::max(longest_u, glm::length(samples.back().du));
+    longest_v = std::max(longest_v, glm::length(samples.back().dv));
+  }
+  std::array<std::vector<double>, kNodes> column, row;  // densities along each line of samples
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto& s = samples[k];
+    if (glm::length(s.du) < kCollapsed * longest_u || glm::length(s.dv) < kCollapsed * longest_v) continue;
+    const Steps steps = steps_at(s, extent, limits);
+    column[k % kNodes].push_back(1 / steps.u);
+    row[k / kNodes].push_back(1 / steps.v);
+  }
+  std::array<double, kNodes> node_u{}, node_v{};
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    node_u[i] = std::max(prominent(column[i]), 1 / extent.x);
+    node_v[i] = std::max(prominent(row[i]), 1 / extent.y);
+  }
   std::vector<double> density_u, density_v;
   for (std::size_t i = 0; i < kIntervals; ++i) {
     density_u.push_back(std::max(node_u[i], node_u[i + 1]));

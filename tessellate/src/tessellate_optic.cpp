@@ -19,6 +19,10 @@ namespace {
 using cad_import::Face;
 
 constexpr int kMostPieces = 100000;  // of one edge
+constexpr double kMostUneven = 2.5;  // even cells over graded ones, above which a grid wastes too many
+constexpr double kMostShare = 4;     // deviation over the limit that more rows and columns may mend
+
+using Grids = std::vector<std::optional<GridSides>>;
 
 /// A mesh of all faces but those that are listed.
 struct Attempt {
@@ -35,7 +39,7 @@ class Tessellator {
   }
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
-  [[nodiscard]] const std::vector<std::optional<GridSides>>& sides() const { return sides_; }
+  [[nodiscard]] const Grids& sides() const { return sides_; }
 
   /// Leaves a face out from now on.
   void skip(std::size_t face, std::string reason) {
@@ -63,10 +67,15 @@ class Tessellator {
     for (std::size_t f = 0; f < faces_.size(); ++f)
       if (skipped_[f].empty()) sizing[f] = size_face(*faces_[f].surface, loop_box(faces_[f]), limits);
     Borders borders(faces_);
+    Grids grids = sides_;
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      if (sizing[f].u.even_cells() > kMostUneven * sizing[f].u.cells() ||
+          sizing[f].v.even_cells() > kMostUneven * sizing[f].v.cells())
+        grids[f].reset();
     std::vector<double> factor(faces_.size(), 1);
     constexpr int kRounds = 4;
     for (int round = 1;; ++round) {
-      cut(borders, sizing, limits, factor);
+      cut(borders, grids, sizing, limits, factor);
       Attempt attempt;
       borders.add_vertices(attempt.draft);
       attempt.failure.resize(faces_.size());
@@ -75,15 +84,17 @@ class Tessellator {
         if (!skipped_[f].empty()) continue;
         const std::size_t first = attempt.draft.triangles.size();
         const auto index = static_cast<int>(f);
-        if (!sides_[f]) {
+        if (!grids[f]) {
           attempt.failure[f] = fill_face(faces_[f], index, borders, sizing[f], limits, attempt.draft);
           continue;
         }
-        mesh_grid(faces_[f], index, *sides_[f], borders, attempt.draft);
+        mesh_grid(faces_[f], index, *grids[f], borders, attempt.draft);
         const double share = worst_chord_share(std::span(attempt.draft.triangles).subspan(first),
                                                attempt.draft.vertices, *faces_[f].surface, limits);
         if (share <= 1) continue;
         tight = false;
+        // Far off somewhere: a place that only refinement on the spot can serve.
+        if (share > kMostShare) grids[f].reset();
         factor[f] *= 1.02 * std::sqrt(share);
       }
       if (tight || round == kRounds) return attempt;
@@ -92,30 +103,30 @@ class Tessellator {
 
  private:
   /// Edges opposite each other in a grid must be cut equally often: classes of edges, joined over all grids.
-  std::vector<std::size_t> grid_classes(const Borders& borders, std::size_t count) const {
+  std::vector<std::size_t> grid_classes(const Borders& borders, const Grids& grids, std::size_t count) const {
     std::vector<std::size_t> parent(count);
     std::iota(parent.begin(), parent.end(), 0);
     const auto root = [&](std::size_t k) {
       while (parent[k] != k) k = parent[k] = parent[parent[k]];
       return k;
     };
-    for (const auto& sides : sides_)
+    for (const auto& sides : grids)
       for (std::size_t k = 0; sides && k < 2; ++k)
         parent[root(borders.index_of((*sides)[k]->edge))] = root(borders.index_of((*sides)[k + 2]->edge));
     for (std::size_t k = 0; k < count; ++k) parent[k] = root(k);
     return parent;
   }
 
-  void cut(Borders& borders, const std::vector<FaceSizing>& sizing, const StepLimits& limits,
-           const std::vector<double>& factor) const {
+  void cut(Borders& borders, const Grids& grids, const std::vector<FaceSizing>& sizing,
+           const StepLimits& limits, const std::vector<double>& factor) const {
     auto& cuts = borders.cuts();
-    const auto class_of = grid_classes(borders, cuts.size());
+    const auto class_of = grid_classes(borders, grids, cuts.size());
     std::vector<int> pieces(cuts.size(), 0);  // by class; 0: free
     for (std::size_t f = 0; f < faces_.size(); ++f) {
-      if (!sides_[f]) continue;
+      if (!grids[f]) continue;
       for (std::size_t k = 0; k < 4; ++k) {
         const double cells = factor[f] * (k % 2 == 0 ? sizing[f].u : sizing[f].v).even_cells();
-        int& need = pieces[class_of[borders.index_of((*sides_[f])[k]->edge)]];
+        int& need = pieces[class_of[borders.index_of((*grids[f])[k]->edge)]];
         need = std::max(need, static_cast<int>(std::ceil(std::min<double>(cells, kMostPieces) - 1e-6)));
       }
     }
@@ -142,7 +153,7 @@ class Tessellator {
   }
 
   std::vector<Face> faces_;
-  std::vector<std::optional<GridSides>> sides_;
+  Grids sides_;
   std::vector<std::string> skipped_;  ///< per face: why it is left out
 };
 
