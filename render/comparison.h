@@ -15,14 +15,16 @@ struct ErrorQuantiles {
 
 /// Error of one optic over the pixels where both pictures show it.
 struct OpticError {
-  std::size_t pixels = 0;           ///< compared
-  std::size_t outline_pixels = 0;   ///< shown by one picture only: left out
-  ErrorQuantiles arcmin;            ///< angle at the last surface point between the exact direction and what is shown
-  ErrorQuantiles screen_px;         ///< the same through the local derivative of direction by pixel
+  std::size_t pixels = 0;          ///< compared
+  std::size_t outline_pixels = 0;  ///< shown by one picture only: left out
+  ErrorQuantiles arcmin;  ///< angle at the last surface point between the exact direction and what is shown
+  /// The same in pixels, through the local derivative of the exact ray by pixel. Left out on caustics, where
+  /// it is singular.
+  ErrorQuantiles screen_px;
 };
 
 struct ImageError {
-  double psnr_db = 0;         ///< of sRGB-encoded, clamped values
+  double psnr_db = 0;         ///< of sRGB-encoded, clamped values; infinite where nothing differs
   double psnr_linear_db = 0;  ///< of linear values, clamped to [0, 1]
   double flip_mean = 0;       ///< LDR-FLIP, Andersson et al. 2020, 67 px/deg
 };
@@ -32,12 +34,15 @@ struct Comparison {
   ImageError image;
 };
 
-/// `reference` must be a raytrace frame with geometry; `frame` one of another mode with geometry, same size.
+/// `reference` must be a raytrace frame with geometry; `frame` one of another mode with geometry, same size:
+/// else throws catoptra::Error. Quantiles are nearest-rank; an optic that shows nowhere has 0 pixels and
+/// zeros.
 [[nodiscard]] Comparison compare(const Frame& reference, const Frame& frame, const Scene& scene);
 
 /// Per-pixel error in arcmin (-1 where there is none), for error pictures.
 [[nodiscard]] std::vector<float> error_map_arcmin(const Frame& reference, const Frame& frame);
 
+/// Of colour alone. Throws catoptra::Error where the sizes differ.
 [[nodiscard]] ImageError image_error(const Frame& reference, const Frame& frame);
 
 }  // namespace catoptra::render
