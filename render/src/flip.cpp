@@ -29,10 +29,10 @@ struct Size {
 
 /// Linear sRGB to CIE XYZ, rows (IEC 61966-2-1; the fractions follow from the primaries and D65).
 const glm::mat3& rgb_to_xyz() {
-  static const glm::mat3 matrix =
-      glm::transpose(glm::mat3(10135552.f / 24577794, 8788810.f / 24577794, 4435075.f / 24577794,
-                               2613072.f / 12288897, 8788810.f / 12288897, 887015.f / 12288897,
-                               1425312.f / 73733382, 8788810.f / 73733382, 70074185.f / 73733382));
+  static const glm::mat3 matrix(
+      glm::transpose(glm::dmat3(10135552 / 24577794.0, 8788810 / 24577794.0, 4435075 / 24577794.0,  //
+                                2613072 / 12288897.0, 8788810 / 12288897.0, 887015 / 12288897.0,    //
+                                1425312 / 73733382.0, 8788810 / 73733382.0, 70074185 / 73733382.0)));
   return matrix;
 }
 
