@@ -40,7 +40,7 @@ struct EdgeUse {
   bool reversed = false;    ///< the loop runs from t_end to t_begin
   bool degenerate = false;  ///< a curve in (u, v) that is one point in space (pole of a sphere)
   bool seam = false;        ///< used twice by this face (closed surface); each use has its own uv curve
-  double tolerance_mm = 0;  ///< how far the space curve may be from the surface, as the file says
+  double tolerance_mm = 0;  ///< how far the space curve is from the surface: what the file says or, if more, what was measured
   std::shared_ptr<const TrimCurve> curve;
 };
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <gp_Pnt2d.hxx>
 
 #include "cad_import/src/face_trim.h"
@@ -100,8 +101,21 @@ class LoopReader {
     use.reversed = edge.Orientation() == TopAbs_REVERSED;
     use.degenerate = BRep_Tool::Degenerated(edge);
     use.seam = BRep_Tool::IsClosed(edge, face_);
-    use.tolerance_mm = BRep_Tool::Tolerance(edge) * placement_.scale();
+    use.tolerance_mm = std::max(BRep_Tool::Tolerance(edge) * placement_.scale(), gap(use));
     return use;
+  }
+
+  // Files understate the distance of their curves from the surface; a mesh that shares the curve must know
+  // it.
+  double gap(const EdgeUse& use) const {
+    constexpr int kSamples = 8;
+    double greatest = 0;
+    for (int i = 0; i <= kSamples; ++i) {
+      const double t = use.t_begin + (use.t_end - use.t_begin) * i / kSamples;
+      const glm::dvec2 uv = use.curve->uv(t);
+      greatest = std::max(greatest, glm::distance(surface_->point(uv.x, uv.y), use.curve->point(t)));
+    }
+    return greatest;
   }
 
   const TopoDS_Face& face_;
