@@ -156,8 +156,8 @@ Model make_car(const CarDesign& design) {
             {side * (v - 0.02f) + 0.10f, back + 0.12f, 0.70f});
     add_box(car, "indicator", {side * (v - 0.02f) - 0.10f, back + 0.004f, 0.52f},
             {side * (v - 0.02f) + 0.10f, back + 0.12f, 0.575f});
-    add_box(car, "trim", {side * 0.98f - 0.09f, 0.66f, 0.93f},
-            {side * 0.98f + 0.09f, 0.76f, 1.06f});  // door mirrors
+    add_box(car, "trim", {side * 0.91f - 0.09f, 0.66f, 0.93f},
+            {side * 0.91f + 0.09f, 0.76f, 1.06f});  // door mirrors
   }
   // The road under a car is dark.
   add_quad(car, "contact shade", {-0.88f, back + 0.05f, 0.012f}, {0.88f, back + 0.05f, 0.012f},
