@@ -50,7 +50,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   write_picture(result.frame, folder / (name + ".png"), false);
   write_picture(error_picture(reference, render::error_map_arcmin(reference, result.frame)),
                 folder / ("error_" + name + ".png"), false);
-  compared.json = {{"optics", optics_json(mode, result.stats, &compared.comparison.optics)},
+  compared.json = {{"optics", optics_json(session.scene(), mode, result.stats, &compared.comparison.optics)},
                    {"image", image_json(compared.comparison.image)},
                    {"time_ms", time_json(compared.timing)}};
   if (!result.warnings.empty()) compared.json["warnings"] = result.warnings;

@@ -52,7 +52,7 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
           {"resolution", {session.frame.width, session.frame.height}},
           {"mode", render::mode_name(mode)},
           {"samples", options.samples},
-          {"optics", optics_json(mode, result.stats, nullptr)},
+          {"optics", optics_json(session.scene(), mode, result.stats, nullptr)},
           {"rays", result.stats.rays},
           {"time_ms", result.stats.time_ms},
           {"warnings", warnings},

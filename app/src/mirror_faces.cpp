@@ -23,6 +23,10 @@ using cad_import::Face;
 /// designed surface join to 0.1 degree or so, while the bevel of a glass turns by tens of degrees.
 const double kSmoothJoinCosine = std::cos(glm::radians(1.0));
 
+/// Groups within this share of the largest are equally large: front and back of a bent sheet differ by less,
+/// and which is larger by rounding must not decide.
+constexpr double kEquallyLarge = 0.99;
+
 /// A second group above this share of the largest may be meant as well: front and back of a glass differ by 1
 /// or 2 %.
 constexpr double kNearlyAsLarge = 0.9;
@@ -166,10 +170,17 @@ DefaultFaces default_mirror_faces(const CadModel& model) {
     if (largest == model.faces.end()) return {};
     return {{largest->index}, ""};
   }
-  DefaultFaces result{groups[0].faces, ""};
-  if (groups.size() > 1 && groups[1].area_mm2 > kNearlyAsLarge * groups[0].area_mm2)
-    result.warning = model.file + ": '" + groups[0].label + "' taken as the mirror, but '" + groups[1].label +
+  const FaceGroup* chosen = &groups[0];
+  for (const FaceGroup& group : groups)
+    if (group.area_mm2 > kEquallyLarge * groups[0].area_mm2 && group.faces[0] < chosen->faces[0])
+      chosen = &group;
+  DefaultFaces result{chosen->faces, ""};
+  for (const FaceGroup& other : groups) {
+    if (&other == chosen || other.area_mm2 <= kNearlyAsLarge * groups[0].area_mm2) continue;
+    result.warning = model.file + ": '" + chosen->label + "' taken as the mirror, but '" + other.label +
                      "' is nearly as large: choose with faces = [...]";
+    break;
+  }
   return result;
 }
 

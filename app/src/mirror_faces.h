@@ -36,8 +36,9 @@ struct FaceGroup {
 /// within 1 degree at the middle of a shared edge). Largest first.
 [[nodiscard]] std::vector<FaceGroup> curved_face_groups(const cad_import::CadModel& model);
 
-/// What reflects where the scene does not say: the largest curved group, or the largest planar face where all
-/// are planar. `warning` is filled where another group is nearly as large (front and back of a glass).
+/// What reflects where the scene does not say: the largest curved group (of groups within 1 % of it the first
+/// in the file), or the largest planar face where all are planar. `warning` is filled where another group is
+/// nearly as large (front and back of a glass).
 struct DefaultFaces {
   std::vector<int> faces;
   std::string warning;

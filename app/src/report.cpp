@@ -35,26 +35,28 @@ ordered_json quantiles_json(const render::ErrorQuantiles& q) {
   return {{"median", q.median}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.max}};
 }
 
-ordered_json optics_json(render::Mode mode, const render::FrameStats& stats,
+ordered_json optics_json(const render::Scene& scene, render::Mode mode, const render::FrameStats& stats,
                          const std::vector<render::OpticError>* errors) {
   const bool exact = mode == render::Mode::hybrid || mode == render::Mode::raytrace;
-  ordered_json optics = ordered_json::array();
-  for (std::size_t i = 0; i < stats.optics.size(); ++i) {
-    const render::OpticStats& optic = stats.optics[i];
-    ordered_json entry{{"name", optic.name}, {"kind", optic.kind}};
-    if (errors) entry["pixels"] = (*errors)[i].pixels;
-    entry["vertices"] = optic.vertices;
-    entry["rays"] = optic.rays;
-    entry["patches"] = patches_json(optic.patches);
+  ordered_json entries = ordered_json::array();
+  for (std::size_t i = 0; i < scene.optics.size(); ++i) {
+    const optics::Optic& optic = scene.optics[i];
+    const render::OpticStats told = i < stats.optics.size() ? stats.optics[i] : render::OpticStats{};
+    ordered_json entry{{"name", optic.name},
+                       {"kind", optic.kind == optics::OpticKind::mirror ? "mirror" : "lens"}};
+    if (errors) entry["pixels"] = errors->at(i).pixels;
+    entry["vertices"] = optic.mesh.vertices.size();
+    entry["rays"] = told.rays;
+    entry["patches"] = patches_json(told.patches);
     if (errors) {
-      entry["outline_pixels"] = (*errors)[i].outline_pixels;
-      entry["error_arcmin"] = quantiles_json((*errors)[i].arcmin);
-      entry["error_px"] = quantiles_json((*errors)[i].screen_px);
+      entry["outline_pixels"] = errors->at(i).outline_pixels;
+      entry["error_arcmin"] = quantiles_json(errors->at(i).arcmin);
+      entry["error_px"] = quantiles_json(errors->at(i).screen_px);
     }
     entry["retraced_fraction"] = exact ? 1.0 : 0.0;
-    optics.push_back(std::move(entry));
+    entries.push_back(std::move(entry));
   }
-  return optics;
+  return entries;
 }
 
 ordered_json image_json(const render::ImageError& image) {

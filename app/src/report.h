@@ -16,9 +16,11 @@ inline constexpr double kIdenticalPsnr_db = 200;
 
 [[nodiscard]] nlohmann::ordered_json quantiles_json(const render::ErrorQuantiles& quantiles);
 
-/// One entry per optic of the frame; `errors` adds pixels and errors and may be null. `mode` tells which
-/// share of the optic's pixels is traced exactly.
-[[nodiscard]] nlohmann::ordered_json optics_json(render::Mode mode, const render::FrameStats& stats,
+/// One entry per optic of the scene. `stats`: what the frame tells of its optics (a mode that treats no optic
+/// apart tells nothing). `errors` adds pixels and errors and may be null. `mode` tells which share of the
+/// optic's pixels is traced exactly.
+[[nodiscard]] nlohmann::ordered_json optics_json(const render::Scene& scene, render::Mode mode,
+                                                 const render::FrameStats& stats,
                                                  const std::vector<render::OpticError>* errors);
 
 [[nodiscard]] nlohmann::ordered_json image_json(const render::ImageError& image);

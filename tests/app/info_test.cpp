@@ -21,36 +21,36 @@ TEST(Info, MirrorMadeIsTheMirrorRead) {
 
   const CommandResult result = run_catoptra({"info", file, "--json"});
   ASSERT_EQ(result.code, 0) << result.errors;
-  const json info = json::parse(result.output)["files"][0];
-  EXPECT_EQ(info["format"], "STEP");
-  EXPECT_EQ(info["unit"], "mm");
-  ASSERT_EQ(info["bodies"].size(), 1u);
-  EXPECT_TRUE(info["bodies"][0]["solid"].get<bool>());
+  const json info = json::parse(result.output).at("files").at(0);
+  EXPECT_EQ(info.at("format"), "STEP");
+  EXPECT_EQ(info.at("unit"), "mm");
+  ASSERT_EQ(info.at("bodies").size(), 1u);
+  EXPECT_TRUE(info.at("bodies").at(0).at("solid").get<bool>());
   std::set<std::string> names;
-  for (const json& face : info["bodies"][0]["faces"]) {
-    names.insert(face["name"].get<std::string>());
-    if (face["name"] != "Glass") continue;
-    EXPECT_EQ(face["surface"], "bspline");
-    EXPECT_FALSE(face["planar"].get<bool>());
+  for (const json& face : info.at("bodies").at(0).at("faces")) {
+    names.insert(face.at("name").get<std::string>());
+    if (face.at("name") != "Glass") continue;
+    EXPECT_EQ(face.at("surface"), "bspline");
+    EXPECT_FALSE(face.at("planar").get<bool>());
     // Between the flat rectangle and the same with the slope of its corner (1 / cos 4.84 degrees) everywhere.
-    EXPECT_GT(face["area_mm2"].get<double>(), 170 * 110);
-    EXPECT_LT(face["area_mm2"].get<double>(), 170 * 110 * 1.0036);
+    EXPECT_GT(face.at("area_mm2").get<double>(), 170 * 110);
+    EXPECT_LT(face.at("area_mm2").get<double>(), 170 * 110 * 1.0036);
   }
   EXPECT_EQ(names, (std::set<std::string>{"Glass", "Back", "Edge"}));
   // Sag at the corner of a sphere R 1200: r^2 / (R + sqrt(R^2 - r^2)), r^2 = 85^2 + 55^2.
   const double r2 = 85.0 * 85 + 55.0 * 55, sag = r2 / (1200 + std::sqrt(1200.0 * 1200 - r2));
-  const json size = info["bounding_box_mm"]["size"];
-  EXPECT_NEAR(size[0].get<double>(), 170, 1e-3);
-  EXPECT_NEAR(size[1].get<double>(), 110, 1e-3);
-  EXPECT_NEAR(size[2].get<double>(), sag + 3, 1e-3);
+  const json size = info.at("bounding_box_mm").at("size");
+  EXPECT_NEAR(size.at(0).get<double>(), 170, 1e-3);
+  EXPECT_NEAR(size.at(1).get<double>(), 110, 1e-3);
+  EXPECT_NEAR(size.at(2).get<double>(), sag + 3, 1e-3);
 }
 
 TEST(Info, NegativeRadiusIsAnOptionValue) {
   const TemporaryFolder folder;
   const std::string file = (folder / "concave.step").string();
   ASSERT_EQ(run_catoptra({"mirror", "make", "--radius", "-600", "-o", file}).code, 0);
-  const json info = json::parse(run_catoptra({"info", file, "--json"}).output)["files"][0];
-  EXPECT_GT(info["bounding_box_mm"]["max"][2].get<double>(), 1)
+  const json info = json::parse(run_catoptra({"info", file, "--json"}).output).at("files").at(0);
+  EXPECT_GT(info.at("bounding_box_mm").at("max").at(2).get<double>(), 1)
       << "the rim of a concave glass stands before its pole";
 }
 
@@ -61,10 +61,10 @@ TEST(Info, OutlineFromFile) {
   const CommandResult made =
       run_catoptra({"mirror", "make", "--radius", "0", "--outline", outline, "-o", file});
   ASSERT_EQ(made.code, 0) << made.errors;
-  const json info = json::parse(run_catoptra({"info", file, "--json"}).output)["files"][0];
-  for (const json& face : info["bodies"][0]["faces"])
-    if (face["name"] == "Glass") {
-      EXPECT_NEAR(face["area_mm2"].get<double>(), 100 * 70 / 2, 0.01);
+  const json info = json::parse(run_catoptra({"info", file, "--json"}).output).at("files").at(0);
+  for (const json& face : info.at("bodies").at(0).at("faces"))
+    if (face.at("name") == "Glass") {
+      EXPECT_NEAR(face.at("area_mm2").get<double>(), 100 * 70 / 2, 0.01);
     }
 }
 
@@ -72,12 +72,12 @@ TEST(Info, MeshesTellTrianglesAndMaterials) {
   const TemporaryFolder folder;
   write_test_wall(folder);
   const json info =
-      json::parse(run_catoptra({"info", (folder / "wall.obj").string(), "--json"}).output)["files"][0];
-  EXPECT_EQ(info["format"], "OBJ");
-  EXPECT_EQ(info["triangles"], 4);
-  EXPECT_GE(info["materials"].size(), 2u);
-  EXPECT_TRUE(info["textures"].empty());
-  EXPECT_NEAR(info["bounding_box_mm"]["size"][0].get<double>(), 6000, 1e-3);
+      json::parse(run_catoptra({"info", (folder / "wall.obj").string(), "--json"}).output).at("files").at(0);
+  EXPECT_EQ(info.at("format"), "OBJ");
+  EXPECT_EQ(info.at("triangles"), 4);
+  EXPECT_GE(info.at("materials").size(), 2u);
+  EXPECT_TRUE(info.at("textures").empty());
+  EXPECT_NEAR(info.at("bounding_box_mm").at("size").at(0).get<double>(), 6000, 1e-3);
 }
 
 TEST(Info, OneBadFileHidesNoOther) {
@@ -86,10 +86,10 @@ TEST(Info, OneBadFileHidesNoOther) {
   const std::string wall = (folder / "wall.obj").string(), empty = folder.write("empty.step", "").string();
   const CommandResult result = run_catoptra({"info", empty, wall, "--json"});
   EXPECT_EQ(result.code, 1);
-  const json files = json::parse(result.output)["files"];
+  const json files = json::parse(result.output).at("files");
   ASSERT_EQ(files.size(), 2u);
-  EXPECT_TRUE(files[0].contains("error"));
-  EXPECT_EQ(files[1]["triangles"], 4);
+  EXPECT_TRUE(files.at(0).contains("error"));
+  EXPECT_EQ(files.at(1).at("triangles"), 4);
   EXPECT_NE(result.errors.find("empty.step"), std::string::npos);
   EXPECT_NE(run_catoptra({"info", empty, wall}).output.find("4 triangles"), std::string::npos);
 }
@@ -98,8 +98,9 @@ TEST(Info, UnitCanBeOverridden) {
   const TemporaryFolder folder;
   write_test_wall(folder);
   const std::string wall = (folder / "wall.obj").string();
-  const json info = json::parse(run_catoptra({"info", wall, "--unit", "cm", "--json"}).output)["files"][0];
-  EXPECT_NEAR(info["bounding_box_mm"]["size"][0].get<double>(), 60000, 1e-2);
+  const json info =
+      json::parse(run_catoptra({"info", wall, "--unit", "cm", "--json"}).output).at("files").at(0);
+  EXPECT_NEAR(info.at("bounding_box_mm").at("size").at(0).get<double>(), 60000, 1e-2);
   EXPECT_EQ(run_catoptra({"info", wall, "--unit", "ell"}).code, 2);
 }
 

@@ -45,12 +45,12 @@ TEST(RenderCommand, ResolutionAndReport) {
                     "40,30", "--samples", "2", "--report", report_file, "--threads", "1"});
   ASSERT_EQ(result.code, 0) << result.errors;
   const json report = json::parse(read_file(report_file));
-  EXPECT_EQ(report["mode"], "raytrace");
-  EXPECT_EQ(report["resolution"], (json{40, 30}));
-  EXPECT_EQ(report["samples"], 2);
-  EXPECT_EQ(report["optics"][0]["name"], "test mirror");
-  EXPECT_EQ(report["optics"][0]["vertices"], 81);
-  EXPECT_TRUE(report["versions"].contains("catoptra"));
+  EXPECT_EQ(report.at("mode"), "raytrace");
+  EXPECT_EQ(report.at("resolution"), (json{40, 30}));
+  EXPECT_EQ(report.at("samples"), 2);
+  EXPECT_EQ(report.at("optics").at(0).at("name"), "test mirror");
+  EXPECT_EQ(report.at("optics").at(0).at("vertices"), 81);
+  EXPECT_TRUE(report.at("versions").contains("catoptra"));
   const render::Frame frame = render::read_image(folder / "x.exr");
   EXPECT_EQ(frame.position.size(), 40u * 30u) << "an .exr with a report holds the geometry layers";
 }
@@ -153,31 +153,33 @@ TEST(CompareCommand, WritesPicturesTableAndReport) {
   EXPECT_NE(result.output.find("test mirror"), std::string::npos);
 
   const json report = json::parse(read_file(out / "report.json"));
-  EXPECT_EQ(report["scene"], scene);
-  EXPECT_EQ(report["resolution"], (json{96, 64}));
-  EXPECT_GT(report["raytrace"]["time_ms"]["frame_median"].get<double>(), 0);
+  EXPECT_EQ(report.at("scene"), scene);
+  EXPECT_EQ(report.at("resolution"), (json{96, 64}));
+  EXPECT_GT(report.at("raytrace").at("time_ms").at("frame_median").get<double>(), 0);
   for (const char* mode : {"pvrr", "hybrid", "cubemap"}) {
-    const json& entry = report["modes"][mode];
-    const json& optic = entry["optics"][0];
-    EXPECT_EQ(optic["name"], "test mirror");
-    EXPECT_EQ(optic["kind"], "mirror");
-    EXPECT_GT(optic["pixels"].get<int>(), 500) << mode;
+    const json& entry = report.at("modes").at(mode);
+    const json& optic = entry.at("optics").at(0);
+    EXPECT_EQ(optic.at("name"), "test mirror");
+    EXPECT_EQ(optic.at("kind"), "mirror");
+    EXPECT_GT(optic.at("pixels").get<int>(), 500) << mode;
     for (const char* key : {"vertices", "rays", "patches", "retraced_fraction"})
       EXPECT_TRUE(optic.contains(key)) << mode << " " << key;
     for (const char* error : {"error_arcmin", "error_px"})
       for (const char* key : {"median", "p99", "p999", "max"})
-        EXPECT_TRUE(optic[error][key].is_number()) << mode << " " << error << " " << key;
-    EXPECT_TRUE(entry["image"]["psnr_db"].is_number()) << mode;
-    EXPECT_TRUE(entry["image"]["flip_mean"].is_number()) << mode;
-    EXPECT_TRUE(entry["time_ms"]["frame_median"].is_number()) << mode;
+        EXPECT_TRUE(optic.at(error).at(key).is_number()) << mode << " " << error << " " << key;
+    EXPECT_TRUE(entry.at("image").at("psnr_db").is_number()) << mode;
+    EXPECT_TRUE(entry.at("image").at("flip_mean").is_number()) << mode;
+    EXPECT_TRUE(entry.at("time_ms").at("frame_median").is_number()) << mode;
   }
-  const json& patch = report["modes"]["pvrr"]["optics"][0]["patches"].at(0);
+  const json& patch = report.at("modes").at("pvrr").at("optics").at(0).at("patches").at(0);
   for (const char* key : {"viewpoint_mm", "residual_mm", "fov_deg"}) EXPECT_TRUE(patch.contains(key)) << key;
   // Hybrid is exact but for the rounding of its float geometry: a millionth of a metre in a metre is 0.0034
   // arcmin.
-  EXPECT_LT(report["modes"]["hybrid"]["optics"][0]["error_arcmin"]["p99"].get<double>(), 0.01);
-  EXPECT_LT(report["modes"]["pvrr"]["optics"][0]["error_arcmin"]["median"].get<double>(),
-            report["modes"]["cubemap"]["optics"][0]["error_arcmin"]["median"].get<double>());
+  EXPECT_LT(report.at("modes").at("hybrid").at("optics").at(0).at("error_arcmin").at("p99").get<double>(),
+            0.01);
+  EXPECT_LT(
+      report.at("modes").at("pvrr").at("optics").at(0).at("error_arcmin").at("median").get<double>(),
+      report.at("modes").at("cubemap").at("optics").at(0).at("error_arcmin").at("median").get<double>());
 }
 
 TEST(CompareCommand, ErrorBoundDecidesTheExitCode) {
@@ -209,19 +211,19 @@ TEST(BenchCommand, JsonHasEveryRatio) {
   ASSERT_EQ(result.code, 0) << result.errors;
   const json report = json::parse(result.output);
   for (const char* mode : kModes) {
-    const json& entry = report["modes"][mode];
-    EXPECT_EQ(entry["frames"], 2) << mode;
+    const json& entry = report.at("modes").at(mode);
+    EXPECT_EQ(entry.at("frames"), 2) << mode;
     for (const char* key : {"min", "median", "max"})
-      EXPECT_GT(entry["frame_ms"][key].get<double>(), 0) << mode;
-    EXPECT_TRUE(entry["rays_per_frame"].is_number_unsigned()) << mode;
-    EXPECT_GT(entry["speedup_vs_raytrace"].get<double>(), 0) << mode;
+      EXPECT_GT(entry.at("frame_ms").at(key).get<double>(), 0) << mode;
+    EXPECT_TRUE(entry.at("rays_per_frame").is_number_unsigned()) << mode;
+    EXPECT_GT(entry.at("speedup_vs_raytrace").get<double>(), 0) << mode;
   }
-  EXPECT_EQ(report["modes"]["raytrace"]["speedup_vs_raytrace"], 1.0);
-  EXPECT_GT(report["triangles"].get<int>(),
+  EXPECT_EQ(report.at("modes").at("raytrace").at("speedup_vs_raytrace"), 1.0);
+  EXPECT_GT(report.at("triangles").get<int>(),
             4 + 128);  // the wall and the 8 x 8 cells of the mirror, and its back and edge
   for (const char* key : {"pvrr_over_raster_passes", "raytrace_over_bare_packets",
                           "optic_commit_over_full_build", "tessellate_over_brepmesh"})
-    EXPECT_GT(report[key].get<double>(), 0) << key;
+    EXPECT_GT(report.at(key).get<double>(), 0) << key;
   EXPECT_NE(run_catoptra({"bench", scene, "--frames", "1", "--modes", "hybrid"}).output.find("hybrid"),
             std::string::npos);
 }
