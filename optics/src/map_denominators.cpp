@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/mat3x2.hpp>
 
 #include "optics/reflection.h"
 #include "optics/src/homography.h"
@@ -143,33 +144,44 @@ double usual_distance(const MapProblem& problem) {
   return *middle;
 }
 
-// How the place of the map (in lengths) changes while the eye's ray moves along `chord` from the vertex: the
-// ray then meets the surface in the tangent plane, where the normal turns by the curvatures (ray
-// differentials: Igehy, SIGGRAPH 1999, sections 3.1 and 3.2).
-glm::dvec2 map_derivative(const MapProblem& problem, std::size_t i, const glm::dvec3& chord,
-                          const glm::dvec3& eye_mm, double distance_mm) {
+// How the place of the map (in lengths) changes while the eye's ray moves from the vertex: a matrix that
+// takes the movement of a point of the ray near the vertex, mm. The ray then meets the surface in the tangent
+// plane, where the normal turns by the curvatures (ray differentials: Igehy, SIGGRAPH 1999, sections 3.1
+// and 3.2).
+glm::dmat3x2 map_jacobian(const MapProblem& problem, std::size_t i, const glm::dvec3& eye_mm,
+                          double distance_mm) {
   const auto& vertex = problem.optic.mesh.vertices[i];
   const VertexHit& hit = problem.hits[i];
   const VirtualView& view = problem.view;
-  const glm::dvec3 n = vertex.normal, ray = vertex.position_mm - eye_mm, d = glm::normalize(ray);
-  const glm::dvec3 d_direction = (chord - glm::dot(chord, d) * d) / glm::length(ray);
-  const glm::dvec3 d_point = chord - d * (glm::dot(chord, n) / glm::dot(d, n));
+  const glm::dvec3 n = vertex.normal, ray = vertex.position_mm - eye_mm;
+  const double length = glm::length(ray);
+  const glm::dvec3 d = ray / length;
+  const double cosine = glm::dot(d, n);
   const glm::dvec3 direction2 = glm::cross(n, vertex.direction1);
-  const glm::dvec3 d_normal = vertex.k1 * glm::dot(d_point, vertex.direction1) * vertex.direction1 +
-                              vertex.k2 * glm::dot(d_point, direction2) * direction2;
-  const glm::dvec3 d_reflected = d_direction - 2 * (glm::dot(d_direction, n) + glm::dot(d, d_normal)) * n -
-                                 2 * glm::dot(d, n) * d_normal;
   const bool far = !std::isfinite(distance_mm);
   const glm::dvec3 h = far ? view.project_direction(hit.direction)
                            : view.project_point(hit.surface_point_mm + distance_mm * hit.direction);
-  const glm::dvec3 moved = far ? d_reflected : d_point + distance_mm * d_reflected;
-  const double dw = view.projection == MapProjection::perspective ? glm::dot(moved, view.direction) : 0.0;
-  const glm::dvec2 sides{view.right_side - view.left, view.top - view.bottom};
-  // h holds (s w, t w, w); the derivative of s w is (moved . right - left dw) / width.
-  const glm::dvec2 d_h = (glm::dvec2(glm::dot(moved, view.right), glm::dot(moved, view.up)) -
-                          dw * glm::dvec2(view.left, view.bottom)) /
-                         sides;
-  return (d_h - dw * glm::dvec2(h) / h.z) / h.z * sides;
+  const glm::dvec2 sides{view.right_side - view.left, view.top - view.bottom}, lower{view.left, view.bottom};
+  const glm::dvec2 place = glm::dvec2(h) / h.z * sides + lower;
+
+  glm::dmat3x2 jacobian{};
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 move{0};
+    move[axis] = 1;
+    const glm::dvec3 d_direction = (move - d[axis] * d) / length;
+    const glm::dvec3 d_point = move - d * (n[axis] / cosine);
+    const glm::dvec3 d_normal = vertex.k1 * glm::dot(d_point, vertex.direction1) * vertex.direction1 +
+                                vertex.k2 * glm::dot(d_point, direction2) * direction2;
+    const glm::dvec3 d_reflected =
+        d_direction - 2 * (glm::dot(d_direction, n) + glm::dot(d, d_normal)) * n - 2 * cosine * d_normal;
+    const glm::dvec3 moved = far ? d_reflected : d_point + distance_mm * d_reflected;
+    // A place is (right, up) / depth; at a parallel projection the depth is 1 whatever moves.
+    const double d_depth =
+        view.projection == MapProjection::perspective ? glm::dot(moved, view.direction) : 0.0;
+    jacobian[axis] =
+        (glm::dvec2(glm::dot(moved, view.right), glm::dot(moved, view.up)) - d_depth * place) / h.z;
+  }
+  return jacobian;
 }
 
 struct EdgeRatio {
@@ -185,7 +197,11 @@ std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const Ma
                                    const glm::dvec3& eye_mm, double distance_mm) {
   const auto& vertices = problem.optic.mesh.vertices;
   std::vector<std::size_t> index(vertices.size(), vertices.size());
-  for (std::size_t k = 0; k < problem.facing.size(); ++k) index[problem.facing[k]] = k;
+  std::vector<glm::dmat3x2> jacobians;
+  for (std::size_t k = 0; k < problem.facing.size(); ++k) {
+    index[problem.facing[k]] = k;
+    jacobians.push_back(map_jacobian(problem, problem.facing[k], eye_mm, distance_mm));
+  }
   std::vector<EdgeRatio> edges;
   for (const auto& triangle : problem.optic.mesh.triangles)
     for (int k = 0; k < 3; ++k) {
@@ -193,8 +209,8 @@ std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const Ma
       if (index[i] == vertices.size() || index[j] == vertices.size()) continue;
       const glm::dvec3 chord = vertices[j].position_mm - vertices[i].position_mm;
       const glm::dvec2 step = samples[index[j]].map - samples[index[i]].map;
-      const double start = glm::dot(map_derivative(problem, i, chord, eye_mm, distance_mm), step);
-      const double end = glm::dot(map_derivative(problem, j, chord, eye_mm, distance_mm), step);
+      const double start = glm::dot(jacobians[index[i]] * chord, step);
+      const double end = glm::dot(jacobians[index[j]] * chord, step);
       // Across a caustic, where the map turns back, no ratio fits. Otherwise the error at the edge's middle
       // is step / 4 times that of the ratio's logarithm.
       if (!(start > 0 && end > 0)) continue;
@@ -205,8 +221,8 @@ std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const Ma
 }
 
 // Changes `x` = ln q to minimise sum weight (x_b - x_a - log_ratio)^2 by conjugate gradients (Hestenes and
-// Stiefel 1952), preconditioned by the diagonal. A relative residual of 1e-6 is far below what the ratios
-// themselves are good for.
+// Stiefel 1952), preconditioned by the diagonal. A relative residual of 1e-4 is below what the ratios themselves
+// are good for.
 void fit_logarithms(std::span<const EdgeRatio> edges, std::vector<double>& x) {
   constexpr int kMaxIterations = 200;
   const std::size_t n = x.size();
@@ -227,7 +243,7 @@ void fit_logarithms(std::span<const EdgeRatio> edges, std::vector<double>& x) {
       z[i] = diagonal[i] > 0 ? residual[i] / diagonal[i] : 0.0;
       now += residual[i] * z[i];
     }
-    if (!(now > 1e-12 * scale)) return;
+    if (!(now > 1e-8 * scale)) return;
     const double beta = iteration > 0 ? now / last : 0.0;
     for (std::size_t i = 0; i < n; ++i) direction[i] = z[i] + beta * direction[i];
     std::ranges::fill(product, 0.0);
