@@ -1,8 +1,31 @@
 #include "render/src/hybrid_frame.h"
 
+#include <algorithm>
+
 #include "render/src/sampling.h"
 
 namespace catoptra::render {
+namespace {
+
+/// Indices of the marked pixels and of those beside them: rasteriser and ray tracer round differently, so
+/// that on the outline one may see the optic where the other does not. The ray tracer knows what to do with
+/// both.
+std::vector<std::uint32_t> with_neighbours(const std::vector<std::uint8_t>& mask, int width, int height) {
+  std::vector<std::uint32_t> pixels;
+  std::vector<std::uint8_t> rows(
+      static_cast<std::size_t>(width));  // marked in this row or the ones beside it
+  for (int y = 0; y < height; ++y) {
+    std::fill(rows.begin(), rows.end(), std::uint8_t(0));
+    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
+      for (int x = 0; x < width; ++x) rows[x] |= mask[static_cast<std::size_t>(row) * width + x];
+    for (int x = 0; x < width; ++x)
+      if (rows[x] | rows[std::max(0, x - 1)] | rows[std::min(width - 1, x + 1)])
+        pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+  }
+  return pixels;
+}
+
+}  // namespace
 
 HybridFrame::HybridFrame(const Scene& scene, RasterScene& raster, const RayTracer& tracer)
     : scene_(scene),
@@ -75,10 +98,7 @@ std::vector<std::uint32_t> HybridFrame::masked_pixels() const {
                                  static_cast<std::size_t>(mask_size_.y));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
-  std::vector<std::uint32_t> pixels;
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask[i]) pixels.push_back(static_cast<std::uint32_t>(i));
-  return pixels;
+  return with_neighbours(mask, mask_size_.x, mask_size_.y);
 }
 
 }  // namespace catoptra::render

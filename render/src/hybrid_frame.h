@@ -25,7 +25,7 @@ class HybridFrame {
  private:
   void begin_mask(const RasterTarget& target);
   void draw_mask(const RasterView& view);
-  /// row * width + column of every pixel in which some sample shows an optic, ascending.
+  /// row * width + column of every pixel in or beside which some sample shows an optic, ascending.
   [[nodiscard]] std::vector<std::uint32_t> masked_pixels() const;
 
   const Scene& scene_;
