@@ -63,6 +63,9 @@ void reject_look_alikes(const std::filesystem::path& file, const FileHead& head)
   if (head.size == 0) throw ImportError(file.string(), "", "the file is empty");
   if (text.substr(0, 42) == "version https://git-lfs.github.com/spec/v1")
     throw ImportError(file.string(), "", "is a Git LFS pointer, not the file itself", "run git lfs pull");
+  if (text.substr(0, 2) == "\xFE\xFF" || text.substr(0, 2) == "\xFF\xFE")
+    throw ImportError(file.string(), "", "is UTF-16 text, which no CAD or mesh format allows",
+                      "save it as UTF-8");
   const bool zip = text.substr(0, 4) == std::string_view("PK\x03\x04", 4);
   if (zip && (text.substr(30, 12) == "Document.xml" || lower_case(file.extension().string()) == ".fcstd"))
     throw ImportError(file.string(), "", "FreeCAD documents cannot be read yet", "export the bodies as STEP");

@@ -73,10 +73,6 @@ Fate fate_of(const TriangleSoup& soup, std::size_t t) {
   return glm::length(area_vector(soup, t)) > kCollinear * longest ? Fate::keep : Fate::degenerate;
 }
 
-std::string count_of(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? " was" : "s were") + " left out";
-}
-
 /// Moves the usable triangles to the front and cuts off the rest.
 void drop_bad_triangles(TriangleSoup& soup, std::vector<std::string>& warnings) {
   std::size_t kept = 0, not_finite = 0, degenerate = 0;
@@ -90,8 +86,11 @@ void drop_bad_triangles(TriangleSoup& soup, std::vector<std::string>& warnings) 
   }
   soup.corners.resize(3 * kept);
   soup.material.resize(kept);
-  if (not_finite > 0) warnings.push_back(count_of(not_finite, "triangle with infinite or undefined corners"));
-  if (degenerate > 0) warnings.push_back(count_of(degenerate, "triangle without area"));
+  if (not_finite > 0)
+    warnings.push_back(std::to_string(not_finite) +
+                       " triangle(s) with infinite or undefined corners were left out");
+  if (degenerate > 0)
+    warnings.push_back(std::to_string(degenerate) + " triangle(s) without area were left out");
 }
 
 /// Unit normal of a triangle with its weight at one corner: the angle there, so that the result does not

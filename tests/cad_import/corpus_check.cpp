@@ -1,0 +1,182 @@
+// Imports one file of the corpus and holds it to its line of the table of expectations.
+//   corpus_check TABLE CORPUS FILE   one file, named from the corpus folder
+//   corpus_check TABLE CORPUS        the table as a whole: every file it names is there, and it names one at
+//   least corpus_check                     the corpus is absent: says so and exits with 77, which CTest shows
+//   as skipped
+// Exit 0: as expected; 1: not; 2: wrong usage.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cad_import/import.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace catoptra::cad_import;
+
+constexpr int kSkipped = 77;
+
+/// One line of the table. A number that is "-" there is not held.
+struct Expectation {
+  std::string file;
+  std::string outcome;  // "cad", "mesh" or "error"
+  std::array<std::optional<double>, 3> size_mm;
+  std::optional<double> tolerance_mm;
+  std::optional<double> solids, faces, triangles;
+  std::string reason;  // "error": part of the message; others: part of some warning
+};
+
+/// What an import gave.
+struct Found {
+  BoundingBox bounds;
+  double solids = 0, faces = 0, triangles = 0;
+  std::vector<std::string> warnings;
+};
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream stream(line);
+  for (std::string field; std::getline(stream, field, '\t');) fields.push_back(field == "-" ? "" : field);
+  fields.resize(11);
+  return fields;
+}
+
+std::optional<double> number(const std::string& field) {
+  if (field.empty()) return std::nullopt;
+  return std::stod(field);
+}
+
+std::vector<Expectation> read_table(const fs::path& table) {
+  std::ifstream stream(table);
+  std::vector<Expectation> lines;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<std::string> f = split(line);
+    lines.push_back({f[0],
+                     f[1],
+                     {number(f[2]), number(f[3]), number(f[4])},
+                     number(f[5]),
+                     number(f[6]),
+                     number(f[7]),
+                     number(f[8]),
+                     f[9]});
+  }
+  return lines;
+}
+
+/// Every exact face can be evaluated in the middle of its domain.
+void check_surfaces(const CadModel& model, std::vector<std::string>& complaints) {
+  for (const Face& face : model.faces) {
+    const ParameterDomain d = face.surface->domain();
+    const double u = 0.5 * (d.u_min + d.u_max), v = 0.5 * (d.v_min + d.v_max);
+    const glm::dvec3 point = face.surface->point(u, v), normal = face.surface->unit_normal(u, v);
+    const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    if (!std::isfinite(point.x + point.y + point.z) || std::abs(length - 1) > 1e-9)
+      complaints.push_back("face " + std::to_string(face.index) + " cannot be evaluated in its middle");
+  }
+}
+
+Found import_file(const fs::path& file, const std::string& outcome, std::vector<std::string>& complaints) {
+  if (outcome == "mesh" || (outcome == "error" && !is_cad(sniff_format(file)))) {
+    const TriangleMesh mesh = import_mesh(file);
+    return {mesh.bounds, 0, 0, static_cast<double>(mesh.triangles.size()), mesh.warnings};
+  }
+  const CadModel model = import_cad(file);
+  check_surfaces(model, complaints);
+  const auto solids =
+      std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.solid; });
+  return {model.bounds, static_cast<double>(solids), static_cast<double>(model.faces.size()), 0,
+          model.warnings};
+}
+
+void compare(const std::string& what, const std::optional<double>& expected, double found, double tolerance,
+             std::vector<std::string>& complaints) {
+  if (!expected || std::abs(*expected - found) <= tolerance) return;
+  std::ostringstream text;
+  text << what << ": " << found << " instead of " << *expected;
+  complaints.push_back(text.str());
+}
+
+void compare(const Expectation& expected, const Found& found, std::vector<std::string>& complaints) {
+  for (int axis = 0; axis < 3; ++axis)
+    compare(std::string("size in ") + "xyz"[axis], expected.size_mm[static_cast<std::size_t>(axis)],
+            found.bounds.max[axis] - found.bounds.min[axis], expected.tolerance_mm.value_or(0), complaints);
+  compare("solids", expected.solids, found.solids, 0, complaints);
+  compare("faces", expected.faces, found.faces, 0, complaints);
+  compare("triangles", expected.triangles, found.triangles, 0, complaints);
+  const auto says = [&](const std::string& warning) {
+    return warning.find(expected.reason) != std::string::npos;
+  };
+  if (!expected.reason.empty() && std::none_of(found.warnings.begin(), found.warnings.end(), says))
+    complaints.push_back("no warning says \"" + expected.reason + "\"");
+}
+
+void compare_error(const Expectation& expected, const fs::path& file, const std::string& message,
+                   std::vector<std::string>& complaints) {
+  std::cout << "error: " << message << "\n";
+  if (expected.outcome != "error") complaints.emplace_back("an import was expected, not an error");
+  if (message.find('\n') != std::string::npos) complaints.emplace_back("the error is more than one line");
+  if (message.rfind(file.string(), 0) != 0) complaints.emplace_back("the error does not name the file");
+  if (expected.outcome == "error" && message.find(expected.reason) == std::string::npos)
+    complaints.push_back("the error does not say \"" + expected.reason + "\"");
+}
+
+int check_file(const std::vector<Expectation>& table, const fs::path& corpus, const std::string& name) {
+  const auto line =
+      std::find_if(table.begin(), table.end(), [&](const Expectation& e) { return e.file == name; });
+  Expectation expected;
+  std::vector<std::string> complaints;
+  if (line != table.end())
+    expected = *line;
+  else
+    complaints.emplace_back("the file is not in the table of expectations");
+  const fs::path file = corpus / name;
+  try {
+    if (expected.outcome.empty()) expected.outcome = is_cad(sniff_format(file)) ? "cad" : "mesh";
+    const Found found = import_file(file, expected.outcome, complaints);
+    const glm::dvec3 size = found.bounds.max - found.bounds.min;
+    std::cout.precision(10);
+    std::cout << "size " << size.x << " x " << size.y << " x " << size.z << " mm, " << found.solids
+              << " solids, " << found.faces << " faces, " << found.triangles << " triangles\n";
+    for (const std::string& warning : found.warnings) std::cout << "warning: " << warning << "\n";
+    if (expected.outcome == "error") complaints.emplace_back("an error was expected, not an import");
+    compare(expected, found, complaints);
+  } catch (const ImportError& error) {
+    compare_error(expected, file, error.what(), complaints);
+  }
+  for (const std::string& complaint : complaints) std::cout << name << ": " << complaint << "\n";
+  return complaints.empty() ? 0 : 1;
+}
+
+int check_table(const std::vector<Expectation>& table, const fs::path& corpus) {
+  if (table.empty()) std::cout << "the table of expectations is empty\n";
+  bool complete = !table.empty();
+  for (const Expectation& line : table) {
+    if (fs::is_regular_file(corpus / line.file)) continue;
+    std::cout << line.file << ": in the table but not in the corpus\n";
+    complete = false;
+  }
+  return complete ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.empty()) {
+    std::cout << "CATOPTRA_CORPUS is not set: no file of the corpus was tested\n";
+    return kSkipped;
+  }
+  if (arguments.size() < 2 || arguments.size() > 3) return 2;
+  const std::vector<Expectation> table = read_table(arguments[0]);
+  return arguments.size() == 2 ? check_table(table, arguments[1])
+                               : check_file(table, arguments[1], arguments[2]);
+}
