@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,7 @@ class Borders {
   explicit Borders(std::span<const cad_import::Face> faces);
 
   [[nodiscard]] std::vector<EdgeCut>& cuts() { return cuts_; }
+  [[nodiscard]] const std::vector<EdgeCut>& cuts() const { return cuts_; }
   [[nodiscard]] const EdgeCut& cut_of(const cad_import::EdgeUse& use) const {
     return cuts_[index_of(use.edge)];
   }
@@ -64,7 +66,12 @@ class Borders {
 /// Cuts an edge so that every piece obeys the limits in space, follows the curve in (u, v), and is no longer
 /// than a cell of the faces it borders (`sizing` by face number). At least `min_pieces`.
 [[nodiscard]] std::vector<double> cut_edge(const EdgeCut& cut, const StepLimits& limits,
-                                           std::span<const FaceSizing> sizing, int min_pieces);
+                                           std::span<const FaceSizing> sizing, int min_pieces,
+                                           double fineness);
+
+/// The least number of even pieces, `at_least` or more, that obeys the limits in space. Nullopt where that
+/// would be many times as many: the curve's parameter is too uneven.
+[[nodiscard]] std::optional<int> even_pieces(const EdgeCut& cut, const StepLimits& limits, int at_least);
 
 /// Cuts an edge in pieces of equal steps in t.
 [[nodiscard]] std::vector<double> cut_evenly(const EdgeCut& cut, int pieces);
