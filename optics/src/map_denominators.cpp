@@ -190,9 +190,18 @@ struct EdgeRatio {
   double weight;
 };
 
+// The mean of what the two ends of an edge ask for, or twice the smaller where they differ by more than that,
+// or 0 where they disagree in sign. A curvature that jumps at a vertex (two faces joined smoothly, a knot of
+// a B-spline) is the wrong one for the edges on its other side, and asks for far too much there. Source: the
+// monotonised central limiter of van Leer, Journal of Computational Physics 23, 1977.
+double limited_mean(double x, double y) {
+  if (x * y <= 0) return 0;
+  return std::copysign(std::min({2 * std::abs(x), 2 * std::abs(y), 0.5 * std::abs(x + y)}), x);
+}
+
 // With q_a and q_b at its ends, an edge shows m(x) = ((1 - x) q_a m_a + x q_b m_b) / ((1 - x) q_a + x q_b),
-// so that m'(0) = q_b / q_a (m_b - m_a) and m'(1) = q_a / q_b (m_b - m_a). The exact derivatives at its ends
-// thus ask for q_b / q_a = sqrt(m'(0) / m'(1)), along m_b - m_a. A planar mirror meets this exactly.
+// so that m'(0) = q_b / q_a (m_b - m_a) and m'(1) = q_a / q_b (m_b - m_a). Each end's exact derivative, along
+// m_b - m_a, thus asks for a ratio. On a planar mirror both ask for the same, and so do all edges together.
 std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const MapSample> samples,
                                    const glm::dvec3& eye_mm, double distance_mm) {
   const auto& vertices = problem.optic.mesh.vertices;
@@ -214,15 +223,16 @@ std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const Ma
       // Across a caustic, where the map turns back, no ratio fits. Otherwise the error at the edge's middle
       // is step / 4 times that of the ratio's logarithm.
       if (!(start > 0 && end > 0)) continue;
-      const double log_ratio = std::clamp(0.5 * std::log(start / end), -1.0, 1.0);
-      edges.push_back({index[i], index[j], log_ratio, glm::dot(step, step)});
+      const double square = glm::dot(step, step);
+      const double log_ratio = limited_mean(std::log(start / square), std::log(square / end));
+      edges.push_back({index[i], index[j], std::clamp(log_ratio, -1.0, 1.0), square});
     }
   return edges;
 }
 
 // Changes `x` = ln q to minimise sum weight (x_b - x_a - log_ratio)^2 by conjugate gradients (Hestenes and
-// Stiefel 1952), preconditioned by the diagonal. A relative residual of 1e-4 is below what the ratios themselves
-// are good for.
+// Stiefel 1952), preconditioned by the diagonal. A relative residual of 1e-4 is below what the ratios
+// themselves are good for.
 void fit_logarithms(std::span<const EdgeRatio> edges, std::vector<double>& x) {
   constexpr int kMaxIterations = 200;
   const std::size_t n = x.size();

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <memory>
 
 #include "optics/exact_hit.h"
 #include "optics/map_coordinates.h"
@@ -34,8 +35,7 @@ glm::dvec3 on_wall(const glm::dvec3& origin, const glm::dvec3& direction) {
 // Object-side error over the optic's picture: for the eye ray through a point of a flat triangle, the angle
 // at the exact surface point between the exact reflection and the direction to the point of the wall that the
 // map shows there.
-Quantiles interpolation_error(double radius_mm, int vertices_a_side, MapInterpolation interpolation) {
-  const Optic mirror = test::conic_mirror(radius_mm, 0, 170, 110, vertices_a_side, vertices_a_side);
+Quantiles interpolation_error(const Optic& mirror, MapInterpolation interpolation) {
   cad_import::TriangleMesh wall;
   const float w = 2e5f, z = float(kWallDistance_mm);
   wall.positions = {{-w, -w, z}, {w, -w, z}, {w, w, z}, {-w, w, z}};
@@ -71,6 +71,28 @@ Quantiles interpolation_error(double radius_mm, int vertices_a_side, MapInterpol
   std::sort(errors.begin(), errors.end());
   return {errors[errors.size() / 2], errors[errors.size() * 99 / 100]};
 }
+
+Quantiles interpolation_error(double radius_mm, int vertices_a_side, MapInterpolation interpolation) {
+  return interpolation_error(test::conic_mirror(radius_mm, 0, 170, 110, vertices_a_side, vertices_a_side),
+                             interpolation);
+}
+
+// A door mirror's two parts in the small: a plane for x < 0 that goes over into a parabola of 600 mm at x =
+// 0.
+class JoinedSurface : public cad_import::ExactSurface {
+ public:
+  cad_import::SurfaceKind kind() const override { return cad_import::SurfaceKind::other; }
+  cad_import::ParameterDomain domain() const override { return {-85, 85, -55, 55, 0, 0}; }
+  double orientation() const override { return 1; }
+  glm::dvec3 point(double u, double v) const override { return {u, v, u > 0 ? -u * u / 1200 : 0}; }
+  cad_import::SurfaceFrame d1(double u, double v) const override {
+    return {point(u, v), {1, 0, u > 0 ? -u / 600 : 0}, {0, 1, 0}};
+  }
+  cad_import::SurfaceDerivatives d2(double u, double v) const override {
+    const auto f = d1(u, v);
+    return {f.point, f.du, f.dv, {0, 0, u > 0 ? -1 / 600.0 : 0}, {0, 0, 0}, {0, 0, 0}};
+  }
+};
 
 struct Row {
   double radius_mm;
@@ -116,6 +138,19 @@ TEST(MapInterpolation, PlanarMirrorIsExactWithAnyVertices) {
     for (const MapInterpolation interpolation : {MapInterpolation::homography, MapInterpolation::fitted})
       EXPECT_LT(interpolation_error(0, vertices, interpolation).p99,
                 1e-7);  // arcmin; double rounding over 5 m
+}
+
+// One homography over both parts would do worse than none.
+TEST(MapInterpolation, JoinOfTwoCurvaturesNeedsNoSpecialCase) {
+  const Optic mirror = test::rectangular_mirror(std::make_shared<JoinedSurface>(), 170, 110, 9, 9);
+  const Quantiles affine = interpolation_error(mirror, MapInterpolation::affine);
+  const Quantiles homography = interpolation_error(mirror, MapInterpolation::homography);
+  const Quantiles fitted = interpolation_error(mirror, MapInterpolation::fitted);
+  std::printf("joined: affine %.3f / %.3f, homography %.3f / %.3f, fitted %.3f / %.3f\n", affine.median,
+              affine.p99, homography.median, homography.p99, fitted.median, fitted.p99);
+  EXPECT_GT(homography.median, affine.median);
+  EXPECT_LT(fitted.median, 0.75 * affine.median);
+  EXPECT_LT(fitted.p99, 0.75 * affine.p99);
 }
 
 TEST(MapInterpolation, ErrorFallsWithTheSquareOfTheMeshSize) {
