@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/src/bench_ratios.h"
 #include "app/src/frame_timing.h"
@@ -43,17 +44,26 @@ const FrameTiming* timing_of(const std::vector<ModeTiming>& timings, render::Mod
   return found == timings.end() ? nullptr : &found->timing;
 }
 
-double pass(const FrameTiming& timing, const std::string& name) {
-  const auto found = timing.pass_ms.find(name);
-  return found == timing.pass_ms.end() ? 0 : found->second;
+/// Median over the frames of the whole frame over its two raster passes: frame by frame, so that a slow spell
+/// of the machine weighs on both sides. Nullopt where the mode has no such passes.
+std::optional<double> frame_over_raster_passes(const FrameTiming& timing) {
+  const auto pass1 = timing.pass_ms.find("pass1"), pass2 = timing.pass_ms.find("pass2");
+  if (pass1 == timing.pass_ms.end() || pass2 == timing.pass_ms.end()) return std::nullopt;
+  std::vector<double> ratios;
+  const std::size_t frames = std::min({timing.frame_ms.size(), pass1->second.size(), pass2->second.size()});
+  for (std::size_t i = 0; i < frames; ++i)
+    ratios.push_back(timing.frame_ms[i] / (pass1->second[i] + pass2->second[i]));
+  if (ratios.empty()) return std::nullopt;
+  return median(std::move(ratios));
 }
 
 ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
+  const auto [least, most] = std::minmax_element(timing.frame_ms.begin(), timing.frame_ms.end());
   return {{"frames", timing.frames},
-          {"frame_ms", {{"min", timing.min_ms}, {"median", timing.median_ms}, {"max", timing.max_ms}}},
+          {"frame_ms", {{"min", *least}, {"median", timing.median_ms()}, {"max", *most}}},
           {"rays_per_frame", timing.rays_per_frame},
-          {"speedup_vs_raytrace", raytrace_ms / timing.median_ms},
-          {"time_ms", timing.pass_ms}};
+          {"speedup_vs_raytrace", raytrace_ms / timing.median_ms()},
+          {"time_ms", pass_json(timing)}};
 }
 
 std::size_t triangle_count(const render::Scene& scene) {
@@ -65,16 +75,14 @@ std::size_t triangle_count(const render::Scene& scene) {
 
 /// The ratios that do not follow from the frame times alone.
 void add_ratios(Session& session, const std::vector<ModeTiming>& timings, ordered_json& report) {
-  if (const FrameTiming* pvrr = timing_of(timings, render::Mode::pvrr)) {
-    const double passes = pass(*pvrr, "pass1") + pass(*pvrr, "pass2");
-    if (passes > 0) report["pvrr_over_raster_passes"] = pvrr->median_ms / passes;
-  }
+  if (const FrameTiming* pvrr = timing_of(timings, render::Mode::pvrr))
+    if (const auto ratio = frame_over_raster_passes(*pvrr)) report["pvrr_over_raster_passes"] = *ratio;
   std::vector<double> bare;
   for (int i = 0; i < kBareRepetitions; ++i)
     bare.push_back(session.renderer().bare_packet_ms(session.scene().camera, session.frame));
   const double bare_ms = median(bare);
   report["bare_packet_ms"] = bare_ms;
-  report["raytrace_over_bare_packets"] = timing_of(timings, render::Mode::raytrace)->median_ms / bare_ms;
+  report["raytrace_over_bare_packets"] = timing_of(timings, render::Mode::raytrace)->median_ms() / bare_ms;
   if (session.scene().optics.empty()) return;
   session.progress.show(-1, "timing commits of the ray scene");
   const CommitTimes commits = time_commits(session.scene());
@@ -126,7 +134,7 @@ int run_bench(const BenchOptions& options, const CommonOptions& common) {
     timings.push_back({mode, time_frames(session.renderer(), mode, session.scene().camera, frame_options,
                                          options.frames, session.progress)});
 
-  const double raytrace_ms = timing_of(timings, render::Mode::raytrace)->median_ms;
+  const double raytrace_ms = timing_of(timings, render::Mode::raytrace)->median_ms();
   ordered_json by_mode = ordered_json::object();
   for (const ModeTiming& t : timings)
     by_mode[std::string(render::mode_name(t.mode))] = mode_json(t.timing, raytrace_ms);

@@ -79,10 +79,10 @@ void print_table(const Session& session, const std::vector<ModeResult>& results,
     const std::string name(render::mode_name(result.mode));
     const auto& optics = result.comparison.optics;
     if (optics.empty())
-      print_row(name.c_str(), "", nullptr, &result.comparison.image, result.timing.median_ms);
+      print_row(name.c_str(), "", nullptr, &result.comparison.image, result.timing.median_ms());
     for (std::size_t i = 0; i < optics.size(); ++i)
       print_row(name.c_str(), session.scene().optics[i].name, &optics[i], &result.comparison.image,
-                result.timing.median_ms);
+                result.timing.median_ms());
   }
   print_row("raytrace", "(the reference)", nullptr, nullptr, raytrace_ms);
   std::printf("(' = arcmin at the optic between the exact direction and what is shown)\n");
@@ -140,7 +140,7 @@ int run_compare(const CompareOptions& options, const CommonOptions& common) {
       {"warnings", session.scene().warnings},
       {"versions", versions_json()}};
   write_text(folder / "report.json", json_text(report));
-  print_table(session, results, reference_timing.median_ms);
+  print_table(session, results, reference_timing.median_ms());
   if (std::fflush(stdout) != 0) throw Error("standard output", "", "cannot be written");
   return options.max_error_arcmin ? check_errors(session, results, *options.max_error_arcmin) : kExitDone;
 }

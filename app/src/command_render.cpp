@@ -1,6 +1,8 @@
 // catoptra render SCENE -o IMAGE
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -64,9 +66,20 @@ struct ReferenceCheck {
   bool passed = false;
 };
 
+/// The colours that a screen shows: 8-bit sRGB. A reference read from PNG is that already, and FLIP judges
+/// displayed pictures: without this the rounding of a PNG alone counts as 0.01 in saturated colours.
+render::Frame as_displayed(render::Frame frame) {
+  const auto rounded = [](float linear) {
+    const float encoded = render::linear_to_srgb(std::clamp(linear, 0.0f, 1.0f));
+    return render::srgb_to_linear(std::round(encoded * 255) / 255);
+  };
+  for (glm::vec4& color : frame.color) color = {rounded(color.r), rounded(color.g), rounded(color.b), 1};
+  return frame;
+}
+
 ReferenceCheck check_reference(const render::Frame& reference, const render::Frame& frame,
                                const RenderOptions& options) {
-  const render::ImageError error = render::image_error(reference, frame);
+  const render::ImageError error = render::image_error(as_displayed(reference), as_displayed(frame));
   const bool passed = error.flip_mean <= options.reference_threshold;
   auto json = image_json(error);
   json["file"] = options.reference;

@@ -12,34 +12,37 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
+double FrameTiming::median_ms() const {
+  return median(frame_ms);
+}
+
 FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, const render::Camera& camera,
                         const render::FrameOptions& options, int frames, Progress& progress) {
   using Clock = std::chrono::steady_clock;
   (void)renderer.render(mode, camera, options);
   FrameTiming timing;
-  std::vector<double> wall_ms;
-  std::map<std::string, std::vector<double>> passes;
+  timing.frames = frames;
   for (int i = 0; i < frames; ++i) {
     progress.show(double(i) / frames, "timing " + std::string(render::mode_name(mode)));
     const auto start = Clock::now();
     const render::RenderResult result = renderer.render(mode, camera, options);
-    wall_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    for (const auto& [name, ms] : result.stats.time_ms) passes[name].push_back(ms);
+    timing.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    for (const auto& [name, ms] : result.stats.time_ms) timing.pass_ms[name].push_back(ms);
     timing.rays_per_frame = result.stats.rays;
   }
   progress.clear();
-  timing.frames = frames;
-  timing.median_ms = median(wall_ms);
-  const auto [least, most] = std::minmax_element(wall_ms.begin(), wall_ms.end());
-  timing.min_ms = *least;
-  timing.max_ms = *most;
-  for (auto& [name, ms] : passes) timing.pass_ms[name] = median(std::move(ms));
   return timing;
 }
 
+nlohmann::ordered_json pass_json(const FrameTiming& timing) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [name, ms] : timing.pass_ms) json[name] = median(ms);
+  return json;
+}
+
 nlohmann::ordered_json time_json(const FrameTiming& timing) {
-  nlohmann::ordered_json json{{"frame_median", timing.median_ms}};
-  for (const auto& [name, ms] : timing.pass_ms) json[name] = ms;
+  nlohmann::ordered_json json{{"frame_median", timing.median_ms()}};
+  json.update(pass_json(timing));
   return json;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/src/progress.h"
 #include "render/renderer.h"
@@ -12,9 +13,11 @@ namespace catoptra::app {
 
 struct FrameTiming {
   int frames = 0;
-  double min_ms = 0, median_ms = 0, max_ms = 0;  ///< wall clock of Renderer::render
-  std::map<std::string, double> pass_ms;  ///< median over the frames of each entry of FrameStats::time_ms
+  std::vector<double> frame_ms;                        ///< wall clock of Renderer::render, one per frame
+  std::map<std::string, std::vector<double>> pass_ms;  ///< each entry of FrameStats::time_ms, one per frame
   std::size_t rays_per_frame = 0;
+
+  [[nodiscard]] double median_ms() const;
 };
 
 /// Middle value (mean of the two middle ones). `values` must not be empty.
@@ -25,7 +28,10 @@ struct FrameTiming {
                                       const render::Camera& camera, const render::FrameOptions& options,
                                       int frames, Progress& progress);
 
-/// {"frame_median": ..., "trace": ..., "pass1": ..., ...}
+/// Medians: {"trace": ..., "pass1": ..., ...}
+[[nodiscard]] nlohmann::ordered_json pass_json(const FrameTiming& timing);
+
+/// The same after the whole frame's: {"frame_median": ..., "trace": ..., "pass1": ..., ...}
 [[nodiscard]] nlohmann::ordered_json time_json(const FrameTiming& timing);
 
 }  // namespace catoptra::app
