@@ -5,19 +5,28 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 
 #include "render/scene.h"
 
 namespace catoptra::render {
 
-/// Offset of sample `index` from the pixel's centre, in pixels (+x right, +y down), within [-0.5, 0.5).
-/// Sample 0 is the centre; further samples follow the R2 sequence (M. Roberts 2018, generalised golden
-/// ratio).
+/// Offset of sample `index` from the pixel's centre, in pixels (+x right, +y down), within (-0.5, 0.5).
+/// Sample 0 is the centre. The others come in opposite pairs of the R2 sequence (M. Roberts 2018, generalised
+/// golden ratio) and, where their number is odd, one triangle about the centre: so that more samples do not
+/// shift the picture. The triangle's radius gives four samples the second moment of a pixel, 1/12. (Two
+/// samples cannot have all of that.)
 [[nodiscard]] inline glm::dvec2 sample_offset(int index, int samples) {
-  if (samples <= 1) return {0, 0};
+  if (samples <= 1 || index == 0) return {0, 0};
+  const bool triangle = samples % 2 == 0 && samples > 2;
+  if (triangle && index <= 3) {
+    const double angle = 0.26 + index * (2 * std::numbers::pi / 3), radius = std::numbers::sqrt2 / 3;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+  }
+  const int k = index - (triangle ? 4 : 1), pair = k / 2 + 1;
   const double a1 = 0.7548776662466927, a2 = 0.5698402909980532;
-  const double x = 0.5 + a1 * index, y = 0.5 + a2 * index;
-  return {x - static_cast<long>(x) - 0.5, y - static_cast<long>(y) - 0.5};
+  const double x = 0.5 + a1 * pair, y = 0.5 + a2 * pair, sign = k % 2 == 0 ? 1 : -1;
+  return sign * glm::dvec2(x - std::floor(x) - 0.5, y - std::floor(y) - 0.5);
 }
 
 /// The rays of a pinhole camera. `corner` + column * `dx` + row * `dy` is the direction through the centre of
