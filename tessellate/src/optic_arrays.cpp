@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "tessellate/optic_mesh.h"
+#include "tessellate/src/exact_vertex.h"
 
 namespace catoptra::tessellate {
 namespace {
@@ -66,19 +67,16 @@ class Flattener {
     auto& corners = corners_[static_cast<std::size_t>(list)];
     for (const auto& c : corners)
       if (c.face == face && c.uv == uv) return c.entry;
-    const auto& surface = *optic_.faces()[static_cast<std::size_t>(face)].surface;
-    const glm::dvec3 normal = surface.unit_normal(uv.x, uv.y);
+    const OpticVertex candidate = exact_vertex(optic_.faces()[static_cast<std::size_t>(face)], face, uv,
+                                               mesh_.data(vertex).exact.position_mm);
     for (const auto& c : corners)
-      if (glm::dot(arrays_.vertices[c.entry].normal, normal) >= cos_crease_) {
+      if (glm::dot(arrays_.vertices[c.entry].normal, candidate.normal) >= cos_crease_) {
         corners.push_back({face, uv, c.entry});
         return corners.back().entry;
       }
-    const auto curvature = surface.principal_curvatures(uv.x, uv.y);
-    const auto created = static_cast<std::uint32_t>(arrays_.vertices.size());
-    arrays_.vertices.push_back({mesh_.data(vertex).exact.position_mm, normal, curvature.k1, curvature.k2,
-                                curvature.direction1, face, uv});
-    corners.push_back({face, uv, created});
-    return created;
+    corners.push_back({face, uv, static_cast<std::uint32_t>(arrays_.vertices.size())});
+    arrays_.vertices.push_back(candidate);
+    return corners.back().entry;
   }
 
   const OpticMesh& optic_;

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "tessellate/src/exact_vertex.h"
 #include "tessellate/src/mesh_draft.h"
 
 namespace catoptra::tessellate {
@@ -15,18 +16,6 @@ using Mesh = HalfEdgeMesh;
 
 OpenMesh::Vec3d to_openmesh(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
-}
-
-/// All that the surface knows at (u, v); the position is given, as a border vertex belongs to several faces.
-OpticVertex exact_vertex(const Face& face, int face_index, const glm::dvec2& uv, const glm::dvec3& position) {
-  const auto curvature = face.surface->principal_curvatures(uv.x, uv.y);
-  return {position,
-          face.surface->unit_normal(uv.x, uv.y),
-          curvature.k1,
-          curvature.k2,
-          curvature.direction1,
-          face_index,
-          uv};
 }
 
 /// Adds the draft's triangles one by one. Where a triangle would make an edge or a vertex non-manifold (faces

@@ -81,7 +81,9 @@ Steps steps_at(const cad_import::SurfaceDerivatives& s, const glm::dvec2& extent
     else if (mm.v < chord.v)
       mm.u = std::min(rest_of_budget(l, m, n, mm.v, limits.chord_mm, mm.u), cap_u);
   }
-  return {mm.u / length_u, mm.v / length_v};
+  // What is smaller than the chord itself cannot stray further than that.
+  const double least = limits.chord_mm < kUnlimited ? limits.chord_mm : 0;
+  return {std::max(mm.u, least) / length_u, std::max(mm.v, least) / length_v};
 }
 
 /// The largest value, but at most kProminent medians.
@@ -142,10 +144,16 @@ FaceSizing size_face(const ExactSurface& surface, const UvBox& box, const StepLi
     column[k % kNodes].push_back(1 / steps.u);
     row[k / kNodes].push_back(1 / steps.v);
   }
-  std::array<double, kNodes> node_u{}, node_v{};
+  std::vector<double> node_u(kNodes), node_v(kNodes);
   for (std::size_t i = 0; i < kNodes; ++i) {
     node_u[i] = std::max(prominent(column[i]), 1 / extent.x);
     node_v[i] = std::max(prominent(row[i]), 1 / extent.y);
+  }
+  for (auto* nodes :
+       {&node_u, &node_v}) {  // the same along the face: a crest in one place, or noise at its rim
+    std::vector<double> sorted = *nodes;
+    const double most = prominent(sorted);
+    for (double& node : *nodes) node = std::min(node, most);
   }
   std::vector<double> density_u, density_v;
   for (std::size_t i = 0; i < kIntervals; ++i) {
