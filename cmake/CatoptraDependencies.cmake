@@ -5,6 +5,7 @@ find_package(assimp 5.2 REQUIRED)                                  # cad_import 
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OPENMESH REQUIRED IMPORTED_TARGET openmesh)      # tessellate      libopenmesh-dev
 find_package(embree 3.13 REQUIRED)                                 # optics          libembree-dev
+find_package(yaml-cpp 0.7 REQUIRED)                                # optics          libyaml-cpp-dev
 find_package(TBB REQUIRED)                                         # optics, render  libtbb-dev
 find_package(OpenImageIO 2.4 REQUIRED)                             # render          libopenimageio-dev
 # Debian's OpenImageIO names OpenCV's include folder without depending on it; nothing here needs it.
