@@ -17,7 +17,7 @@ void main() {
   vec3 direction = reflect(normalize(v_relative), normalize(v_normal));
   write_optic_color(reflects, textureLod(map_color, direction, 0.0).rgb, v_relative, v_normal);
 #ifdef GEOMETRY
-  vec4 shown = point_on_ray(cube_center, direction, textureLod(map_position, direction, 0.0),
+  vec4 shown = point_on_ray(cube_center, direction, cube_center, textureLod(map_position, direction, 0.0),
                             textureLod(map_normal, direction, 0.0).xyz);
   write_optic_geometry(reflects, shown, v_relative);
 #endif

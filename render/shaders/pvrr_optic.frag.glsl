@@ -37,8 +37,8 @@ void main() {
   vec4 shown = vec4(normalize(direction), 0.0);
   if (inside) {
     vec3 ray = map_ray_direction * vec3(1.0, st);
-    shown = point_on_ray(map_ray_origin * vec3(1.0, st), ray, textureLod(map_position, at, 0.0),
-                         textureLod(map_normal, at, 0.0).xyz);
+    shown = point_on_ray(map_ray_origin * vec3(1.0, st), ray, v_relative + origin.xyz,
+                         textureLod(map_position, at, 0.0), textureLod(map_normal, at, 0.0).xyz);
   }
   write_optic_geometry(reflects, shown, v_relative);
 #endif

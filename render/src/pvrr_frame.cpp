@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
+#include "render/src/pvrr_plane_view.h"
 #include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
 
@@ -77,9 +78,9 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       // The map's samples move within its texels as the picture's do within pixels, but not in step with
       // them.
       const glm::dvec2 map_offset(offset.y, offset.x);
-      pass1_ms += gl_time_ms([&] { draw_maps(map_offset, geometry, options); });
+      pass1_ms += gl_time_ms([&] { draw_maps(offset, geometry, options); });
       pass2_ms += gl_time_ms([&] {
-        draw_picture(picture.target(), camera_view(camera, size, offset), map_offset, geometry, options);
+        draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
         picture.add_sample();
       });
     }
@@ -112,8 +113,15 @@ void PvrrFrame::trace(std::size_t index, const RasterView& camera, const FrameOp
     return;
   }
   patch.view = optics::make_virtual_view(optic, patch.hits, bounds_);
+  const auto plane = plane_view(optic, camera, patch.view, bounds_);
+  patch.on_pixel_grid = plane.has_value();
+  if (plane) patch.view = plane->view;
   patch.coordinates = optics::map_coordinates(optic, patch.hits, patch.view);
   raster_.optic(index).set_map_coordinates(patch.coordinates);
+  if (plane) {
+    patch.map.resize({plane->texels, 1.0}, options.geometry);
+    return;
+  }
   std::vector<glm::dvec3> pixels;
   pixels.reserve(optic.mesh.vertices.size());
   for (const auto& vertex : optic.mesh.vertices) pixels.push_back(camera.pixel(vertex.position_mm));
@@ -142,11 +150,17 @@ void PvrrFrame::set_overlay(const FrameOptions& options) {
   overlay_.set_lines(lines);
 }
 
+glm::dvec2 PvrrFrame::map_offset(const Patch& patch, glm::dvec2 offset_px) {
+  // In general the map's samples move within its texels as the picture's do within pixels, but not in step
+  // with them.
+  return patch.on_pixel_grid ? plane_view_offset(offset_px) : glm::dvec2(offset_px.y, offset_px.x);
+}
+
 void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, const FrameOptions& options) {
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     Patch& patch = patches_[i];
     if (!patch.faces_eye) continue;
-    patch.map.draw(raster_, i, patch.view, offset_px, geometry);
+    patch.map.draw(raster_, i, patch.view, map_offset(patch, offset_px), geometry);
     if (!options.overlay_vertices && !options.overlay_rays) continue;
     patch.map.target().bind(false);
     overlay_.draw_in_scene(patch.map.view(), patch.map.clip_depth());
@@ -154,12 +168,12 @@ void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, const FrameOption
 }
 
 void PvrrFrame::draw_picture(const RasterTarget& picture_target, const RasterView& camera,
-                             glm::dvec2 map_offset_px, bool geometry, const FrameOptions& options) {
+                             glm::dvec2 offset_px, bool geometry, const FrameOptions& options) {
   RasterPass pass;
   pass.geometry = geometry;
   picture_target.bind(geometry);
   raster_.draw(camera, pass);
-  for (std::size_t i = 0; i < patches_.size(); ++i) draw_optic(i, camera, map_offset_px, geometry);
+  for (std::size_t i = 0; i < patches_.size(); ++i) draw_optic(i, camera, offset_px, geometry);
   if (!options.overlay_vertices && !options.overlay_rays) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   picture_target.bind(false);
@@ -168,14 +182,13 @@ void PvrrFrame::draw_picture(const RasterTarget& picture_target, const RasterVie
   for (std::size_t i = 0; i < patches_.size(); ++i) overlay_.draw_mesh(camera, raster_.optic(i));
 }
 
-void PvrrFrame::draw_optic(std::size_t index, const RasterView& camera, glm::dvec2 map_offset_px,
-                           bool geometry) {
+void PvrrFrame::draw_optic(std::size_t index, const RasterView& camera, glm::dvec2 offset_px, bool geometry) {
   const Patch& patch = patches_[index];
   const RasterTarget& map = patch.map.target();
   glUseProgram(optic_program(geometry).id());
   RasterScene::set_mesh_origin(camera, raster_.optic(index).center_mm());
   set_optic_uniforms(scene_.optics[index], index);
-  const glm::dvec2 shift = -map_offset_px / glm::dvec2(map.size());
+  const glm::dvec2 shift = -map_offset(patch, offset_px) / glm::dvec2(map.size());
   glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
   glBindTextureUnit(kMapColorUnit, map.color().id());
   if (geometry) {

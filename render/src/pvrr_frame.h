@@ -37,15 +37,18 @@ class PvrrFrame {
     std::vector<glm::dvec3> coordinates;
     std::size_t rays = 0;
     bool faces_eye = false;
+    bool on_pixel_grid = false;  ///< the view is that of plane_view()
     PvrrMap map;
   };
 
   void trace(std::size_t optic, const RasterView& camera, const FrameOptions& options);
   void set_overlay(const FrameOptions& options);
+  /// Where the samples of an optic's map lie within its texels, for samples at `offset_px` in the pixels.
+  [[nodiscard]] static glm::dvec2 map_offset(const Patch& patch, glm::dvec2 offset_px);
   void draw_maps(glm::dvec2 offset_px, bool geometry, const FrameOptions& options);
   void draw_picture(const RasterTarget& picture_target, const RasterView& camera, glm::dvec2 map_offset_px,
                     bool geometry, const FrameOptions& options);
-  void draw_optic(std::size_t optic, const RasterView& camera, glm::dvec2 map_offset_px, bool geometry);
+  void draw_optic(std::size_t optic, const RasterView& camera, glm::dvec2 offset_px, bool geometry);
   [[nodiscard]] FrameStats statistics() const;
   const GlProgram& optic_program(bool geometry);
 
