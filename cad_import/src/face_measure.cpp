@@ -11,27 +11,37 @@
 #include <cstdio>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
+#include "cad_import/bspline_surface.h"
 #include "cad_import/src/affine_map.h"
 
 namespace catoptra::cad_import {
 namespace {
 
-constexpr int kGrid = 16;           // samples a side for the bounds
+constexpr int kLeastGrid = 16;      // samples a side for the bounds
+constexpr int kMostGrid = 512;      // a terrain of 300 x 300 poles needs that many; more would take seconds
 constexpr double kPlanarMm = 1e-7;  // the promise of Face::planar
 
-/// Seeks the extreme of one coordinate near a start by a pattern search over (u, v) inside the trimming.
+/// The rectangle of parameters that the boundary spans.
+struct ParameterBox {
+  glm::dvec2 low{1e300}, high{-1e300};
+};
+
+/// Seeks the extreme of one coordinate near a start by a pattern search over (u, v) inside the trimming,
+/// which has a margin, and inside the boundary's rectangle, which has none.
 class ExtremeSearch {
  public:
-  ExtremeSearch(const ExactSurface& surface, const FaceTrim& trim, int axis, double sign)
-      : surface_(surface), trim_(trim), axis_(axis), sign_(sign) {}
+  ExtremeSearch(const ExactSurface& surface, const FaceTrim& trim, const ParameterBox& box, int axis,
+                double sign)
+      : surface_(surface), trim_(trim), box_(box), axis_(axis), sign_(sign) {}
 
   glm::dvec3 run(glm::dvec2 uv, glm::dvec2 step) const {
     glm::dvec3 best = surface_.point(uv.x, uv.y);
     for (int halvings = 0; halvings < 12;) {
       bool better = false;
       for (const glm::dvec2 d : {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)}) {
-        const glm::dvec2 next = uv + d * step;
+        const glm::dvec2 next = glm::clamp(uv + d * step, box_.low, box_.high);
         if (!trim_.contains(next.x, next.y)) continue;
         const glm::dvec3 p = surface_.point(next.x, next.y);
         if (sign_ * p[axis_] <= sign_ * best[axis_]) continue;
@@ -49,9 +59,18 @@ class ExtremeSearch {
  private:
   const ExactSurface& surface_;
   const FaceTrim& trim_;
+  const ParameterBox& box_;
   int axis_;
   double sign_;
 };
+
+/// Two samples for every span of a B-spline: each may have a bump of its own.
+glm::ivec2 sample_counts(const ExactSurface& surface) {
+  const BSplineSurface* spline = surface.as_bspline();
+  if (!spline) return glm::ivec2(kLeastGrid);
+  return {std::clamp(2 * spline->axis_u().span_count(), kLeastGrid, kMostGrid),
+          std::clamp(2 * spline->axis_v().span_count(), kLeastGrid, kMostGrid)};
+}
 
 void hash_number(std::uint32_t& hash, std::int64_t value) {
   for (int byte = 0; byte < 8; ++byte) {
@@ -75,11 +94,11 @@ void extend(BoundingBox& box, const BoundingBox& other) {
 BoundingBox face_bounds(const ExactSurface& surface, const FaceTrim& trim,
                         std::span<const std::vector<glm::dvec2>> polygons) {
   BoundingBox box;
-  glm::dvec2 low(1e300), high(-1e300);
+  ParameterBox uv_box;
   for (const auto& polygon : polygons)
     for (const glm::dvec2& p : polygon) {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
+      uv_box.low = glm::min(uv_box.low, p);
+      uv_box.high = glm::max(uv_box.high, p);
       extend(box, surface.point(p.x, p.y));
     }
   if (box.empty() || surface.kind() == SurfaceKind::plane) return box;
@@ -89,10 +108,11 @@ BoundingBox face_bounds(const ExactSurface& surface, const FaceTrim& trim,
     glm::dvec3 point;
   };
   std::vector<Sample> samples;
-  const glm::dvec2 step = (high - low) / double(kGrid);
-  for (int i = 0; i < kGrid; ++i)
-    for (int j = 0; j < kGrid; ++j) {
-      const glm::dvec2 uv = low + step * (glm::dvec2(i, j) + 0.5);
+  const glm::ivec2 count = sample_counts(surface);
+  const glm::dvec2 step = (uv_box.high - uv_box.low) / glm::dvec2(count);
+  for (int i = 0; i < count.x; ++i)
+    for (int j = 0; j < count.y; ++j) {
+      const glm::dvec2 uv = uv_box.low + step * (glm::dvec2(i, j) + 0.5);
       if (trim.contains(uv.x, uv.y)) samples.push_back({uv, surface.point(uv.x, uv.y)});
     }
   if (samples.empty()) return box;
@@ -100,7 +120,7 @@ BoundingBox face_bounds(const ExactSurface& surface, const FaceTrim& trim,
     for (const double sign : {-1.0, 1.0}) {
       const auto best =
           std::ranges::max_element(samples, {}, [&](const Sample& s) { return sign * s.point[axis]; });
-      extend(box, ExtremeSearch(surface, trim, axis, sign).run(best->uv, step));
+      extend(box, ExtremeSearch(surface, trim, uv_box, axis, sign).run(best->uv, step));
     }
   return box;
 }

@@ -17,7 +17,24 @@
 
 #include "cad_import/import.h"
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#include <IGESControl_Controller.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#endif
+
 namespace {
+
+/// OpenCASCADE makes its tables of translator parameters once per process and never frees them: 157
+/// allocations, 3,328 bytes, whatever the file. Made here first, they are no leak; whatever leaks later is
+/// one.
+void make_kernel_tables() {
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler not_counted;
+  STEPCAFControl_Controller::Init();
+  IGESControl_Controller::Init();
+#endif
+}
 
 namespace fs = std::filesystem;
 using namespace catoptra::cad_import;
@@ -176,6 +193,7 @@ int main(int argc, char** argv) {
     return kSkipped;
   }
   if (arguments.size() < 2 || arguments.size() > 3) return 2;
+  make_kernel_tables();
   const std::vector<Expectation> table = read_table(arguments[0]);
   return arguments.size() == 2 ? check_table(table, arguments[1])
                                : check_file(table, arguments[1], arguments[2]);

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <sstream>
 #include <string>
 
+#include "cad_import/import.h"
 #include "tests/cad_import/mesh_files.h"
 
 namespace catoptra::cad_import {
@@ -69,6 +71,49 @@ TEST(MirrorBlankFile, NamesItsFacesAndLeavesNoOtherFile) {
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
   EXPECT_EQ(files, 1);
+}
+
+/// Largest distance in z of the imported `Glass` from the ideal surface over 40 x 40 points inside the
+/// outline.
+double glass_error_mm(const MirrorBlank& blank, const std::filesystem::path& file) {
+  write_mirror_blank(blank, file);
+  const CadModel model = import_cad(file);
+  EXPECT_EQ(model.bodies.size(), 1u);
+  EXPECT_TRUE(model.bodies.front().solid);
+  double worst = 0;
+  for (const Face& face : model.faces) {
+    if (face.name != "Glass") continue;
+    EXPECT_EQ(face.surface->kind(), SurfaceKind::bspline);
+    EXPECT_GT(face.surface->unit_normal(0, 0).z, 0.999);  // u = x, v = y: the pole, seen from outside
+    EXPECT_NEAR(glm::length(face.surface->point(0, 0)), 0, 1e-6);
+    const ParameterDomain d = face.surface->domain();
+    for (int i = 0; i <= 40; ++i)
+      for (int j = 0; j <= 40; ++j) {
+        const double u = d.u_min + (d.u_max - d.u_min) * i / 40, v = d.v_min + (d.v_max - d.v_min) * j / 40;
+        if (!face.trim->contains(u, v)) continue;
+        const glm::dvec3 p = face.surface->point(u, v);
+        worst = std::max(worst, std::abs(p.z - mirror_sag_mm(blank, p.x, p.y)));
+      }
+    return worst;
+  }
+  ADD_FAILURE() << "no face is called Glass";
+  return 0;
+}
+
+TEST(MirrorBlankFile, GlassReadsBackWithinAMillionthOfAMillimetre) {
+  const ScratchFolder folder;
+  constexpr double kPromise_mm = 1e-6;  // write_mirror_blank's
+  MirrorBlank blank;
+  EXPECT_LT(glass_error_mm(blank, folder / "door.step"), kPromise_mm);
+  blank.outline = MirrorOutline::rounded;
+  blank.radius_h_mm = blank.radius_v_mm = -400;
+  EXPECT_LT(glass_error_mm(blank, folder / "concave.step"), kPromise_mm);
+  blank.radius_h_mm = 900;
+  blank.radius_v_mm = 0;
+  EXPECT_LT(glass_error_mm(blank, folder / "cylinder.step"), kPromise_mm);
+  blank.radius_h_mm = blank.radius_v_mm = 1200;
+  blank.aspheric = AsphericPart{40, 200, true};
+  EXPECT_LT(glass_error_mm(blank, folder / "aspheric.step"), kPromise_mm);
 }
 
 TEST(MirrorBlankFile, EveryKindOfGlassAndOutlineIsAValidSolid) {
