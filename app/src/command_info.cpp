@@ -4,6 +4,7 @@
 
 #include "app/src/commands.h"
 #include "app/src/file_report.h"
+#include "app/src/one_line.h"
 #include "app/src/output_file.h"
 #include "app/src/report.h"
 #include "cad_import/import.h"
@@ -45,7 +46,7 @@ int run_info(const InfoOptions& options, const CommonOptions& common) {
     } catch (const Error& error) {
       progress.clear();
       failed = true;
-      std::fprintf(stderr, "catoptra: %s\n", error.what());
+      std::fprintf(stderr, "catoptra: %s\n", one_line(error.what()).c_str());
       files.push_back({{"file", file}, {"error", error.what()}});
     }
   }

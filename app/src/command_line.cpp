@@ -10,6 +10,7 @@
 
 #include "app/src/commands.h"
 #include "app/src/nearest_name.h"
+#include "app/src/one_line.h"
 #include "app/version.h"
 
 namespace catoptra::app {
@@ -39,12 +40,7 @@ void set_up_log(const CommonOptions& common) {
 }
 
 int complain(int code, const std::string& text) {
-  // Some libraries put several lines into a message; the promise is one line.
-  std::string line = text;
-  for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  std::fprintf(stderr, "catoptra: %s\n", line.c_str());
+  std::fprintf(stderr, "catoptra: %s\n", one_line(text).c_str());
   return code;
 }
 

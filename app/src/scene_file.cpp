@@ -5,6 +5,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "app/src/one_line.h"
 #include "app/src/scene_context.h"
 #include "cad_import/error.h"
 #include "cad_import/import.h"
@@ -16,8 +17,8 @@ toml::table parse(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, std::string_view(name));
   } catch (const toml::parse_error& error) {
-    throw Error(name, "line " + std::to_string(error.source().begin.line), std::string(error.description()),
-                "the file is not valid TOML");
+    throw Error(name, "line " + std::to_string(error.source().begin.line),
+                one_line(std::string(error.description())), "the file is not valid TOML");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "app/src/nearest_name.h"
+#include "app/src/one_line.h"
 #include "cad_import/error.h"
 
 namespace catoptra::app {
@@ -70,7 +71,7 @@ std::string TomlTable::entity(std::string_view key) const {
 }
 
 void TomlTable::fail(std::string_view key, const std::string& reason, const std::string& hint) const {
-  throw Error(file_, entity(key), reason, hint);
+  throw Error(file_, one_line(entity(key)), one_line(reason), one_line(hint));
 }
 
 void TomlTable::fail_missing(std::string_view key, const std::string& hint) const {

@@ -81,12 +81,12 @@ TEST(RenderCommand, ReferencePassesFailsOrIsMissing) {
   EXPECT_EQ(run_catoptra({"render", scene, "-o", second, "--mode", "raytrace", "--reference", first}).code,
             0);
 
-  const std::string flat = write_test_scene(folder, 0).string();
+  const std::string darker = write_test_scene(folder, 400, "reflectance = 0.3\n").string();
   const CommandResult differs =
-      run_catoptra({"render", flat, "-o", second, "--mode", "raytrace", "--reference", first});
+      run_catoptra({"render", darker, "-o", second, "--mode", "raytrace", "--reference", first});
   EXPECT_EQ(differs.code, 3) << differs.errors;
   EXPECT_NE(differs.errors.find("FLIP"), std::string::npos);
-  EXPECT_EQ(run_catoptra({"render", flat, "-o", second, "--mode", "raytrace", "--reference", first,
+  EXPECT_EQ(run_catoptra({"render", darker, "-o", second, "--mode", "raytrace", "--reference", first,
                           "--reference-threshold", "1"})
                 .code,
             0);
