@@ -1,5 +1,6 @@
 // Speed of the optics' mesher against the CAD kernel's, same faces, same chord, in one run.
-// Usage: bench_tessellate [FILE...]: the reflecting faces of a made mirror first, then every face of each CAD file.
+// Usage: bench_tessellate [FILE...]: the reflecting faces of a made mirror first, then every face of each CAD
+// file.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -26,7 +27,8 @@ double median_ms(int count, const std::function<void()>& work) {
   for (int i = 0; i < count; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     work();
-    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    times.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   std::nth_element(times.begin(), times.begin() + count / 2, times.end());
   return times[static_cast<std::size_t>(count / 2)];
@@ -56,8 +58,9 @@ void compare(const char* name, const std::filesystem::path& file, const std::vec
   const double kernel_ms = median_ms(1, [&] {
     kernel_triangles = cad_import::triangulate(model, indices, {kChord_mm, kAngle_rad}).triangles.size();
   });
-  std::printf("%-28s %8.2f ms (%zu vertices, %zu triangles)   BRepMesh %9.1f ms (%zu triangles)   ratio %.0f\n", name,
-              own_ms, vertices, triangles, kernel_ms, kernel_triangles, kernel_ms / own_ms);
+  std::printf(
+      "%-28s %8.2f ms (%zu vertices, %zu triangles)   BRepMesh %9.1f ms (%zu triangles)   ratio %.0f\n", name,
+      own_ms, vertices, triangles, kernel_ms, kernel_triangles, kernel_ms / own_ms);
 }
 
 void compare_mirror(const char* name, const cad_import::MirrorBlank& blank) {
