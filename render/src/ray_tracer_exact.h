@@ -1,11 +1,4 @@
-// Exact hits on a mirror for packets of rays: the surface over each mesh triangle as a polynomial height.
-//
-// Newton iteration on the CAD surface costs several evaluations of it per ray. Here the surface is evaluated
-// once, when the optic is set up: over each triangle the exact height above the triangle's plane is
-// interpolated by a polynomial of degree 5 in the triangle's barycentric coordinates and compared with the
-// surface at other points. Where both agree to kHeightTolerance and kSlopeTolerance, rays are intersected
-// with the polynomial, sixteen at a time; elsewhere (a knot line crosses the triangle, a pole)
-// optics::exact_hit does it. A picture in single precision cannot tell the two apart.
+// Exact hits on a mirror, and reflection there, for packets of rays.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +7,9 @@
 
 #include "optics/optic.h"
 #include "optics/ray_scene.h"
+#include "render/src/ray_tracer_patches.h"
 
 namespace catoptra::render {
-
-inline constexpr double kHeightTolerance =
-    1e-8;  ///< mm; 1/1000 of what a float holds of a coordinate of 100 mm
-inline constexpr double kSlopeTolerance = 1e-9;  ///< rad; 1/60 of what a float holds of a unit direction
 
 /// Rays as a mirror sends them on. Structure of arrays.
 struct alignas(64) MirrorRays {
@@ -50,6 +40,7 @@ struct alignas(64) MirrorLanes {
   // In. Directions must be ordinary numbers in every lane, active or not.
   bool active[kLanes];
   double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit
+  double start[kLanes];                                                  ///< distance of the mesh's hit, mm
   std::uint32_t triangle[kLanes];                                        ///< of the optic's mesh
   float u[kLanes], v[kLanes];  ///< weights of its second and third vertex
   // Out, for active lanes.
@@ -58,37 +49,27 @@ struct alignas(64) MirrorLanes {
 
 class ExactMirror {
  public:
-  /// Samples every triangle, in parallel. `optic` must outlive this object and stay as it is.
+  /// Fits the patches of every face. `optic` must outlive this object and stay as it is.
   explicit ExactMirror(const optics::Optic& optic);
 
-  /// Hits and reflects the active lanes.
+  /// Hits and reflects the active lanes: on the patches, and by optics::exact_hit where they do not stand for
+  /// the surface.
   void reflect(const glm::dvec3& eye_mm, MirrorLanes& lanes) const;
 
-  /// Share of the triangles over which the polynomial stands for the surface.
-  [[nodiscard]] double polynomial_share() const;
+  /// Share of the mesh's triangles whose middle lies on a valid patch, and the number of patches.
+  [[nodiscard]] double patched_share() const;
+  [[nodiscard]] std::size_t patch_count() const;
 
  private:
-  static constexpr int kDegree = 5, kCoefficients = (kDegree + 1) * (kDegree + 2) / 2;
-
-  /// point = corner + b1 e1 + b2 e2 + height(b1, b2) normal, e1 and e2 the triangle's edges at its first
-  /// corner.
-  struct alignas(64) Patch {
-    glm::dvec3 corner;
-    glm::dvec3 g1, g2, normal;         ///< dual basis of (e1, e2, normal): b1 = g1 . (point - corner), ...
-    double c[kCoefficients];           ///< of b1^i b2^j, by j, then i
-    double h11 = 0, h12 = 0, h22 = 0;  ///< second derivatives of the height at the centroid
-    double curvature_sum = 0, gaussian = 0;  ///< of the surface there, convex towards the normal positive
-    bool valid = false;
-  };
-  friend struct PatchBuilder;
-
-  void reflect_on_patch(const Patch& patch, const glm::dvec3& eye_mm,
+  const SurfacePatch* patch_of(const MirrorLanes& lanes, int lane) const;
+  void reflect_on_patch(const SurfacePatch& patch, const glm::dvec3& eye_mm,
                         const bool (&chosen)[MirrorLanes::kLanes], MirrorLanes& lanes,
                         bool (&solved)[MirrorLanes::kLanes]) const;
-  void reflect_by_newton(const Patch& patch, const glm::dvec3& eye_mm, int lane, MirrorLanes& lanes) const;
+  void reflect_by_newton(const glm::dvec3& eye_mm, int lane, MirrorLanes& lanes) const;
 
   const optics::Optic& optic_;
-  std::vector<Patch> patches_;
+  std::vector<FacePatches> faces_;
+  std::vector<const SurfacePatch*> patch_of_triangle_;  ///< null: the triangle lies on several patches
 };
 
 }  // namespace catoptra::render

@@ -93,6 +93,7 @@ void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
     p.mirror.direction_x[i] = x / length;
     p.mirror.direction_y[i] = y / length;
     p.mirror.direction_z[i] = z / length;
+    p.mirror.start[i] = p.optic[i] >= 0 ? p.first.t_max[i] * length : 1.0;
   }
   for (std::size_t optic = 0; optic < mirrors_.size(); ++optic) {
     bool any = false;

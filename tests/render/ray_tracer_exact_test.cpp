@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "cad_import/bspline_surface.h"
 #include "optics/exact_hit.h"
 #include "optics/ray_scene.h"
 #include "optics/reflection.h"
@@ -31,6 +32,7 @@ render::MirrorLanes aim(const optics::RayScene& scene, const glm::dvec3& eye,
     lanes.direction_x[i] = d.x;
     lanes.direction_y[i] = d.y;
     lanes.direction_z[i] = d.z;
+    lanes.start[i] = hit ? hit.t_mm : 1;
     lanes.triangle[i] = hit ? hit.triangle : 0;
     lanes.u[i] = float(hit.barycentric.x);
     lanes.v[i] = float(hit.barycentric.y);
@@ -60,7 +62,7 @@ struct Traced {
 
 TEST(ExactMirror, PolynomialsReplaceNewtonOnSmoothMirrors) {
   for (const double radius : {0.0, 1200.0, -1200.0, 3000.0})
-    EXPECT_EQ(render::ExactMirror(test::conic_mirror(radius, 0, 170, 110, 7, 7)).polynomial_share(), 1)
+    EXPECT_EQ(render::ExactMirror(test::conic_mirror(radius, 0, 170, 110, 7, 7)).patched_share(), 1)
         << radius;
 }
 
@@ -156,42 +158,82 @@ TEST(ExactMirror, ParaboloidFocusesToANanometre) {
   }
 }
 
-/// A plane with a crease along x = 0: no polynomial fits across it.
-class CreasedSurface : public cad_import::ExactSurface {
+/// A plane with ripples of 0.16 mm: finer than the finest cell, so that no polynomial fits anywhere.
+class RippledSurface : public cad_import::ExactSurface {
  public:
   cad_import::SurfaceKind kind() const override { return cad_import::SurfaceKind::other; }
   cad_import::ParameterDomain domain() const override { return {-85, 85, -55, 55, 0, 0}; }
   double orientation() const override { return 1; }
-  glm::dvec3 point(double u, double v) const override { return {u, v, -0.001 * u * std::abs(u)}; }
+  glm::dvec3 point(double u, double v) const override { return {u, v, 1e-5 * std::sin(40 * u)}; }
   cad_import::SurfaceFrame d1(double u, double v) const override {
-    return {point(u, v), {1, 0, -0.002 * std::abs(u)}, {0, 1, 0}};
+    return {point(u, v), {1, 0, 4e-4 * std::cos(40 * u)}, {0, 1, 0}};
   }
   cad_import::SurfaceDerivatives d2(double u, double v) const override {
     const auto f = d1(u, v);
-    return {f.point, f.du, f.dv, {0, 0, u > 0 ? -0.002 : 0.002}, {0, 0, 0}, {0, 0, 0}};
+    return {f.point, f.du, f.dv, {0, 0, -1.6e-2 * std::sin(40 * u)}, {0, 0, 0}, {0, 0, 0}};
   }
 };
 
 TEST(ExactMirror, FallsBackToNewtonWhereNoPolynomialFits) {
-  optics::Optic optic =
-      test::conic_mirror(0, 0, 170, 110, 6, 6);  // the middle column of cells straddles the crease
-  const auto creased = std::make_shared<CreasedSurface>();
-  optic.faces[0].surface = creased;
-  for (auto& v : optic.mesh.vertices) v.position_mm = creased->point(v.uv.x, v.uv.y);
+  optics::Optic optic = test::conic_mirror(0, 0, 170, 110, 6, 6);
+  const auto rippled = std::make_shared<RippledSurface>();
+  optic.faces[0].surface = rippled;
+  for (auto& v : optic.mesh.vertices) v.position_mm = rippled->point(v.uv.x, v.uv.y);
   const Traced t(std::move(optic));
-  EXPECT_GT(t.mirror.polynomial_share(), 0.5);
-  EXPECT_LT(t.mirror.polynomial_share(), 1);
+  EXPECT_EQ(t.mirror.patched_share(), 0);
   const glm::dvec3 eye(0, 0, 700);
   std::vector<glm::dvec3> targets;
-  for (int i = 0; i < kLanes; ++i) targets.emplace_back(-15 + 2 * i, 3 + i, 0);
+  for (int i = 0; i < kLanes; ++i) targets.emplace_back(-15.3 + 2.1 * i, 3 + i, 0);
   render::MirrorLanes lanes = aim(t.scene, eye, targets);
   t.mirror.reflect(eye, lanes);
   for (int i = 0; i < kLanes; ++i) {
     ASSERT_TRUE(lanes.active[i]);
     const glm::dvec3 s = surface(lanes, i);
-    EXPECT_NEAR(s.z, creased->point(s.x, s.y).z, 4 * render::kHeightTolerance);
+    EXPECT_NEAR(s.z, rippled->point(s.x, s.y).z, 1e-9) << "mm";
     EXPECT_LT(glm::length(reflected(lanes, i) -
-                          optics::reflect(direction(lanes, i), creased->unit_normal(s.x, s.y))),
+                          optics::reflect(direction(lanes, i), rippled->unit_normal(s.x, s.y))),
+              1e-10);
+  }
+}
+
+// Like the mirror glasses of the examples: cubic, their third derivatives jump at the knots, and 2e-5 mm
+// rough.
+TEST(ExactMirror, SplinesAreSplitAtTheirKnots) {
+  cad_import::BSplineData data;
+  data.degree_u = data.degree_v = 3;
+  data.pole_count_u = data.pole_count_v = 11;
+  for (int k = 0; k < 15; ++k) data.knots_u.push_back(-85 + 170 * std::clamp((k - 3) / 8.0, 0.0, 1.0));
+  data.knots_v = data.knots_u;
+  for (int i = 0; i < 11; ++i)
+    for (int j = 0; j < 11; ++j) {
+      const auto greville = [&](int k) {
+        return (data.knots_u[k + 1] + data.knots_u[k + 2] + data.knots_u[k + 3]) / 3;
+      };
+      const double x = greville(i), y = greville(j);
+      data.poles.emplace_back(x, y, -(x * x + y * y) / 2400 + 2e-5 * std::sin(i * 5 + j * 3));
+    }
+  const auto spline = std::make_shared<cad_import::BSplineSurface>(data, 1);
+  optics::Optic optic = test::conic_mirror(0, 0, 170, 110, 12, 12);
+  optic.faces[0].surface = spline;
+  for (auto& v : optic.mesh.vertices) {
+    v.position_mm = spline->point(v.uv.x, v.uv.y);
+    v.normal = spline->unit_normal(v.uv.x, v.uv.y);
+  }
+  const Traced t(std::move(optic));
+  EXPECT_EQ(t.mirror.patched_share(), 1);
+  EXPECT_LE(t.mirror.patch_count(), 1024u) << "about 64 spans, some of them in parts";
+  const glm::dvec3 eye(100, 30, 700);
+  std::vector<glm::dvec3> targets;
+  for (int i = 0; i < kLanes; ++i) targets.emplace_back(-70.3 + 9.1 * i, -40 + 5 * i, 0);
+  render::MirrorLanes lanes = aim(t.scene, eye, targets);
+  t.mirror.reflect(eye, lanes);
+  for (int i = 0; i < kLanes; ++i) {
+    ASSERT_TRUE(lanes.active[i]);
+    const auto newton = optics::newton_hit(*spline, {eye, direction(lanes, i)},
+                                           {targets[std::size_t(i)].x, targets[std::size_t(i)].y});
+    ASSERT_TRUE(newton);
+    EXPECT_LT(glm::length(surface(lanes, i) - newton->position_mm), 4 * render::kHeightTolerance);
+    EXPECT_LT(glm::length(reflected(lanes, i) - optics::reflect(direction(lanes, i), newton->normal)),
               4 * render::kSlopeTolerance);
   }
 }

@@ -1,0 +1,88 @@
+// A mirror's exact surface as polynomial heights over flat cells, for intersecting many rays at once.
+//
+// Newton iteration on a CAD surface costs several evaluations of it per ray. Here the surface is evaluated
+// when the optic is set up: over a cell of its (u, v) the exact height above a plane through three of the
+// cell's corners is interpolated by a polynomial of degree 5 and compared with the surface at other points,
+// the cell's border and a little beyond included. Cells that disagree are split, at the knots of a B-spline
+// where there are any; those that never agree (a crease, a pole) are left to Newton iteration. A picture in
+// single precision cannot tell the polynomials from the surface.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "cad_import/exact_surface.h"
+
+namespace catoptra::render {
+
+inline constexpr double kHeightTolerance =
+    1e-8;  ///< mm; 1/1000 of what a float holds of a coordinate of 100 mm
+inline constexpr double kSlopeTolerance = 1e-9;  ///< rad; 1/60 of what a float holds of a unit direction
+
+/// point = corner + b1 e1 + b2 e2 + height(b1, b2) normal, with e1 and e2 along the cell's sides.
+struct alignas(64) SurfacePatch {
+  static constexpr int kDegree = 5, kCoefficients = (kDegree + 1) * (kDegree + 2) / 2;
+
+  glm::dvec3 corner{0};
+  glm::dvec3 g1{0}, g2{0}, normal{0};  ///< dual basis of (e1, e2, normal): b1 = g1 . (point - corner), ...
+  double c[kCoefficients] = {};        ///< of b1^i b2^j by j, then i: 6, 5, 4, 3, 2, 1 of them
+  bool valid = false;                  ///< agrees with the surface over its cell
+};
+
+/// Value and slopes of a patch's height.
+struct PatchHeight {
+  double value, dx, dy;
+};
+
+/// By Horner's scheme in both variables, without loops, so that the compiler can run it for several rays at
+/// once.
+[[gnu::always_inline]] inline PatchHeight patch_height(const double* c, double x, double y) {
+  const double p4 = c[18] + x * c[19];
+  const double p3 = c[15] + x * (c[16] + x * c[17]), p3x = c[16] + x * (2 * c[17]);
+  const double p2 = c[11] + x * (c[12] + x * (c[13] + x * c[14])),
+               p2x = c[12] + x * (2 * c[13] + x * (3 * c[14]));
+  const double p1 = c[6] + x * (c[7] + x * (c[8] + x * (c[9] + x * c[10])));
+  const double p1x = c[7] + x * (2 * c[8] + x * (3 * c[9] + x * (4 * c[10])));
+  const double p0 = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  const double p0x = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * (5 * c[5]))));
+  return {p0 + y * (p1 + y * (p2 + y * (p3 + y * (p4 + y * c[20])))),
+          p0x + y * (p1x + y * (p2x + y * (p3x + y * c[19]))),
+          p1 + y * (2 * p2 + y * (3 * p3 + y * (4 * p4 + y * (5 * c[20]))))};
+}
+
+/// A rectangle of (u, v).
+struct UvBox {
+  glm::dvec2 low{0}, high{0};
+};
+
+/// The patches of one face: a tree of cells over its parameters.
+class FacePatches {
+ public:
+  /// Covers `used`, the parameter boxes of the mesh's triangles on the face; cells that meet none are left
+  /// out. Runs on all threads. Copies what it needs of `surface`.
+  FacePatches(const cad_import::ExactSurface& surface, std::span<const UvBox> used);
+
+  /// Index in patches() of the one for (u, v); parameters outside the domain are brought into it.
+  [[nodiscard]] int find(glm::dvec2 uv) const;
+
+  [[nodiscard]] std::span<const SurfacePatch> patches() const { return patches_; }
+
+ private:
+  struct Cell {
+    UvBox box;
+    glm::dvec2 split{0};
+    int first_child = -1;  ///< of four: low-low, high-low, low-high, high-high; -1: a leaf
+    int patch = 0;
+    int depth = 0;
+  };
+
+  void split(std::size_t cell, const cad_import::ExactSurface& surface);
+
+  cad_import::ParameterDomain domain_;
+  std::vector<Cell> cells_;
+  std::vector<SurfacePatch> patches_;
+};
+
+}  // namespace catoptra::render
