@@ -35,7 +35,7 @@ double median_ms(int count, const std::function<void()>& work) {
 }
 
 void compare(const char* name, const std::filesystem::path& file, const std::vector<int>& indices) {
-  // The kernel keeps its mesh with the shape: every run needs a fresh import, whose time does not count.
+  // The kernel keeps its mesh with the shape, so that only its first run counts.
   const cad_import::CadModel model = cad_import::import_cad(file);
   std::vector<cad_import::Face> faces;
   for (const int i : indices.empty() ? [&] {

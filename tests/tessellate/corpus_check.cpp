@@ -14,7 +14,7 @@ using namespace catoptra;
 constexpr int kSkipped = 77;
 
 /// Complaints about the mesh of one model.
-int check(const cad_import::CadModel& model) {
+int check(const cad_import::CadModel& model, bool complete) {
   tessellate::TessellationOptions options;
   options.chord_mm = 0.1;
   options.max_vertices = 300000;
@@ -36,6 +36,13 @@ int check(const cad_import::CadModel& model) {
   expect(lost == 0, "faces neither meshed nor named, or both", lost);
   expect(test::vertex_error_mm(result.mesh) <= 1e-9, "vertices off the surface, mm",
          test::vertex_error_mm(result.mesh));
+  const double chord_error = test::chord_error_mm(result.mesh);
+  if (complete) {
+    expect(result.unmeshed.empty(), "faces not meshed", static_cast<double>(result.unmeshed.size()));
+    expect(chord_error <= options.chord_mm, "chord error, mm", chord_error);
+  } else {
+    std::printf("   chord error, mm: %g\n", chord_error);
+  }
   expect(!result.mesh.arrays().triangles.empty(), "triangles",
          static_cast<double>(result.mesh.triangle_count()));
   return wrong;
@@ -49,7 +56,7 @@ int main(int argc, char** argv) {
     return kSkipped;
   }
   try {
-    return check(cad_import::import_cad(argv[1])) == 0 ? 0 : 1;
+    return check(cad_import::import_cad(argv[1]), argc > 2) == 0 ? 0 : 1;
   } catch (const cad_import::ImportError& error) {
     // Whether a file must import is cad_import's test; here it only has no face to mesh.
     std::printf("no faces: %s\n", error.what());
