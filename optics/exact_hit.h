@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 
 #include "cad_import/exact_surface.h"
 #include "optics/optic.h"
@@ -16,7 +17,7 @@ struct ExactHit {
   double t_mm = 0;
   glm::dvec3 position_mm{0};
   glm::dvec3 normal{0};  ///< unit, out of the material
-  int face = 0;          ///< index in Optic::faces
+  int face = 0;          ///< index in the faces of the optic (or of the side of a lens)
   glm::dvec2 uv{0};
   int iterations = 0;
 };
@@ -33,5 +34,10 @@ inline constexpr double kExactHitTolerance = 1e-10;
 /// the triangle; where that fails or lands outside the face's trimming, from the neighbouring faces of the
 /// optic.
 [[nodiscard]] std::optional<ExactHit> exact_hit(const Optic& optic, const Ray& ray, const Hit& mesh_hit);
+
+/// The same for one side of a lens.
+[[nodiscard]] std::optional<ExactHit> exact_hit(std::span<const cad_import::Face> faces,
+                                                const tessellate::OpticArrays& mesh, const Ray& ray,
+                                                const Hit& mesh_hit);
 
 }  // namespace catoptra::optics

@@ -100,23 +100,28 @@ std::optional<ExactHit> newton_hit(const ExactSurface& surface, const Ray& ray, 
 }
 
 std::optional<ExactHit> exact_hit(const Optic& optic, const Ray& ray, const Hit& mesh_hit) {
-  if (!mesh_hit || mesh_hit.triangle >= optic.mesh.triangles.size()) return std::nullopt;
-  const auto& triangle = optic.mesh.triangles[mesh_hit.triangle];
+  return exact_hit(optic.faces, optic.mesh, ray, mesh_hit);
+}
+
+std::optional<ExactHit> exact_hit(std::span<const Face> faces, const tessellate::OpticArrays& mesh,
+                                  const Ray& ray, const Hit& mesh_hit) {
+  if (!mesh_hit || mesh_hit.triangle >= mesh.triangles.size()) return std::nullopt;
+  const auto& triangle = mesh.triangles[mesh_hit.triangle];
   const glm::dvec2 w = mesh_hit.barycentric;
   const glm::dvec2 start = (1 - w.x - w.y) * triangle.uv[0] + w.x * triangle.uv[1] + w.y * triangle.uv[2];
-  if (auto hit = hit_face(optic.faces[triangle.face], ray, start)) {
+  if (auto hit = hit_face(faces[triangle.face], ray, start)) {
     hit->face = triangle.face;
     return hit;
   }
-  if (optic.faces.size() < 2) return std::nullopt;
+  if (faces.size() < 2) return std::nullopt;
 
   // Near a border the chord and the surface can be on different sides of it: try the faces that the
   // triangle's corners also belong to, from that corner's own parameters there.
   std::optional<ExactHit> nearest;
-  const auto& vertices = optic.mesh.vertices;
-  std::vector<bool> tried(optic.faces.size(), false);
+  const auto& vertices = mesh.vertices;
+  std::vector<bool> tried(faces.size(), false);
   tried[triangle.face] = true;
-  for (const auto& other : optic.mesh.triangles) {
+  for (const auto& other : mesh.triangles) {
     if (tried[other.face]) continue;
     for (int k = 0; k < 3; ++k) {
       const glm::dvec3& corner = vertices[other.vertices[k]].position_mm;
@@ -124,7 +129,7 @@ std::optional<ExactHit> exact_hit(const Optic& optic, const Ray& ray, const Hit&
           triangle.vertices, [&](std::uint32_t v) { return vertices[v].position_mm == corner; });
       if (!shared) continue;
       tried[other.face] = true;
-      auto hit = hit_face(optic.faces[other.face], ray, other.uv[k]);
+      auto hit = hit_face(faces[other.face], ray, other.uv[k]);
       if (hit && (!nearest || hit->t_mm < nearest->t_mm)) {
         hit->face = other.face;
         nearest = hit;
