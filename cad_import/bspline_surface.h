@@ -99,14 +99,13 @@ class BSplineSurface final : public ExactSurface {
   [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
 
  private:
-  // Homogeneous value and derivatives up to order 2 with respect to the local parameters.
-  struct Homogeneous {
-    glm::dvec4 p, u, v, uu, uv, vv;
-  };
-  template <int Order>
+  struct Homogeneous;
+  template <int Order, int P, int Q>
   [[nodiscard]] Homogeneous evaluate_power(const glm::dvec4* block, double x, double y) const;
   template <int Order>
   [[nodiscard]] Homogeneous evaluate_bezier(const glm::dvec4* block, double x, double y) const;
+  template <int Order>
+  [[nodiscard]] Homogeneous evaluate_block(const glm::dvec4* block, double x, double y) const;
   template <int Order>
   [[nodiscard]] Homogeneous evaluate(double u, double v) const;
   void build_blocks(const BSplineData& data);

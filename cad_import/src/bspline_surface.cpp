@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cad_import/error.h"
+#include "cad_import/src/lanes.h"
 #include "cad_import/src/span_matrix.h"
 
 namespace catoptra::cad_import {
@@ -24,7 +25,16 @@ void check(const BSplineData& d) {
     fail("the number of knots is not poles + degree + 1");
 }
 
+glm::dvec3 vector(const Lanes& a) {
+  return {a.xy[0], a.xy[1], a.zw[0]};
+}
+
 }  // namespace
+
+// Homogeneous value and derivatives up to order 2 with respect to the local parameters.
+struct BSplineSurface::Homogeneous {
+  Lanes p, u, v, uu, uv, vv;
+};
 
 SpanAxis::SpanAxis(std::span<const double> knots, int degree, double period) : period_(period) {
   const int last = int(knots.size()) - degree - 1;
@@ -56,7 +66,7 @@ SpanAxis::Position SpanAxis::locate(double t) const {
   if (t >= end())
     s = span_count() - 1;
   else if (t > begin()) {
-    s = bucket_[std::min(std::size_t((t - begin()) * bucket_rate_), bucket_.size() - 1)];
+    s = bucket_[std::min(std::int32_t((t - begin()) * bucket_rate_), std::int32_t(bucket_.size()) - 1)];
     while (s > 0 && t < breaks_[s]) --s;
     while (s + 1 < span_count() && t >= breaks_[s + 1]) ++s;
   }
@@ -114,19 +124,20 @@ void BSplineSurface::build_blocks(const BSplineData& data) {
     }
 }
 
-// Horner over v in every row, then over u across the rows; derivatives ride along.
-template <int Order>
+// Horner over v in every row, then over u across the rows; derivatives ride along. P and Q are the degrees
+// where they are known when compiling (the loops unroll and the rows run side by side), else -1.
+template <int Order, int P, int Q>
 BSplineSurface::Homogeneous BSplineSurface::evaluate_power(const glm::dvec4* block, double x,
                                                            double y) const {
+  const int p = P >= 0 ? P : degree_u_, q = Q >= 0 ? Q : degree_v_;
   Homogeneous h{};
-  const int nv = degree_v_ + 1;
-  for (int i = degree_u_; i >= 0; --i) {
-    const glm::dvec4* row = block + std::size_t(i) * nv;
-    glm::dvec4 c = row[degree_v_], cv(0), cvv(0);
-    for (int j = degree_v_ - 1; j >= 0; --j) {
+  for (int i = p; i >= 0; --i) {
+    const glm::dvec4* row = block + i * (q + 1);
+    Lanes c(row[q]), cv, cvv;
+    for (int j = q - 1; j >= 0; --j) {
       if constexpr (Order >= 2) cvv = cvv * y + cv;  // half the second derivative
       if constexpr (Order >= 1) cv = cv * y + c;
-      c = c * y + row[j];
+      c = c * y + Lanes(row[j]);
     }
     if constexpr (Order >= 2) {
       h.uu = h.uu * x + h.u;
@@ -152,9 +163,9 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(const glm::dvec4* bl
   const BernsteinBasis bu(degree_u_, x), bv(degree_v_, y);
   Homogeneous h{};
   for (int i = 0; i <= degree_u_; ++i) {
-    glm::dvec4 c(0), cv(0), cvv(0);
+    Lanes c, cv, cvv;
     for (int j = 0; j <= degree_v_; ++j) {
-      const glm::dvec4& b = block[std::size_t(i) * (degree_v_ + 1) + j];
+      const Lanes b(block[std::size_t(i) * (degree_v_ + 1) + j]);
       c += bv.value[j] * b;
       if constexpr (Order >= 1) cv += bv.first[j] * b;
       if constexpr (Order >= 2) cvv += bv.second[j] * b;
@@ -173,6 +184,16 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(const glm::dvec4* bl
   return h;
 }
 
+template <int Order>
+BSplineSurface::Homogeneous BSplineSurface::evaluate_block(const glm::dvec4* block, double x,
+                                                           double y) const {
+  if (!power_basis_) return evaluate_bezier<Order>(block, x, y);
+  if (degree_u_ == 3 && degree_v_ == 3) return evaluate_power<Order, 3, 3>(block, x, y);
+  if (degree_u_ == 2 && degree_v_ == 2) return evaluate_power<Order, 2, 2>(block, x, y);
+  if (degree_u_ == 5 && degree_v_ == 5) return evaluate_power<Order, 5, 5>(block, x, y);
+  return evaluate_power<Order, -1, -1>(block, x, y);
+}
+
 // Locates the span, evaluates, turns local derivatives into those by u and v, and divides by the weight
 // (Piegl and Tiller, eq. 4.20).
 template <int Order>
@@ -180,8 +201,7 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
   const SpanAxis::Position pu = axis_u_.locate(u), pv = axis_v_.locate(v);
   const glm::dvec4* block = coefficients_.data() +
                             (std::size_t(pu.span) * axis_v_.span_count() + pv.span) * coefficients_per_span();
-  Homogeneous h = power_basis_ ? evaluate_power<Order>(block, pu.local, pv.local)
-                               : evaluate_bezier<Order>(block, pu.local, pv.local);
+  Homogeneous h = evaluate_block<Order>(block, pu.local, pv.local);
   if constexpr (Order >= 1) {
     h.u *= pu.rate;
     h.v *= pv.rate;
@@ -192,33 +212,33 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
     h.vv *= pv.rate * pv.rate;
   }
   if (!rational_) return h;
-  const double inverse = 1 / h.p.w;
+  const double inverse = 1 / h.p.w();
   h.p *= inverse;
   if constexpr (Order >= 1) {
-    const double wu = h.u.w, wv = h.v.w;
+    const double wu = h.u.w(), wv = h.v.w();
     h.u = (h.u - wu * h.p) * inverse;
     h.v = (h.v - wv * h.p) * inverse;
     if constexpr (Order >= 2) {
-      h.uv = (h.uv - wu * h.v - wv * h.u - h.uv.w * h.p) * inverse;
-      h.uu = (h.uu - 2 * wu * h.u - h.uu.w * h.p) * inverse;
-      h.vv = (h.vv - 2 * wv * h.v - h.vv.w * h.p) * inverse;
+      h.uv = (h.uv - wu * h.v - wv * h.u - h.uv.w() * h.p) * inverse;
+      h.uu = (h.uu - 2 * wu * h.u - h.uu.w() * h.p) * inverse;
+      h.vv = (h.vv - 2 * wv * h.v - h.vv.w() * h.p) * inverse;
     }
   }
   return h;
 }
 
 glm::dvec3 BSplineSurface::point(double u, double v) const {
-  return origin_ + glm::dvec3(evaluate<0>(u, v).p);
+  return origin_ + vector(evaluate<0>(u, v).p);
 }
 
 SurfaceFrame BSplineSurface::d1(double u, double v) const {
   const Homogeneous h = evaluate<1>(u, v);
-  return {origin_ + glm::dvec3(h.p), h.u, h.v};
+  return {origin_ + vector(h.p), vector(h.u), vector(h.v)};
 }
 
 SurfaceDerivatives BSplineSurface::d2(double u, double v) const {
   const Homogeneous h = evaluate<2>(u, v);
-  return {origin_ + glm::dvec3(h.p), h.u, h.v, h.uu, h.uv, h.vv};
+  return {origin_ + vector(h.p), vector(h.u), vector(h.v), vector(h.uu), vector(h.uv), vector(h.vv)};
 }
 
 }  // namespace catoptra::cad_import
