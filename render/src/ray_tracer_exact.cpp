@@ -6,20 +6,12 @@
 
 #include "optics/exact_hit.h"
 #include "optics/reflection.h"
+#include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
 namespace {
 
 constexpr int kLanes = MirrorLanes::kLanes;
-
-/// Compiled for wider vector units too, the best of which is chosen when the program is loaded. The results
-/// are the same on all: no operation is contracted or reordered. (Sanitizers cannot run the code that
-/// chooses.)
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define CATOPTRA_VECTOR_CLONES [[gnu::target_clones("default", "avx2", "avx512f")]]
-#else
-#define CATOPTRA_VECTOR_CLONES
-#endif
 
 /// What reflection does to a spherical wave from the eye at `distance` (generalised Coddington for a mirror;
 /// Landgrave and Moya-Cessa 1996). With the surface's curvatures a in the plane of incidence, b across it,

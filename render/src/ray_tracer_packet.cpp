@@ -12,6 +12,42 @@ static_assert(kLanes == ShadeLanes::kLanes && kLanes == MirrorLanes::kLanes);
 
 constexpr int kMaxOwnHits = 8;  // times a reflected ray may pass through the optic it comes from
 
+/// One lane's ray and hit.
+void copy_hit(const optics::RayPacket16& from, int i, optics::RayPacket16& to) {
+  to.origin_x[i] = from.origin_x[i];
+  to.origin_y[i] = from.origin_y[i];
+  to.origin_z[i] = from.origin_z[i];
+  to.direction_x[i] = from.direction_x[i];
+  to.direction_y[i] = from.direction_y[i];
+  to.direction_z[i] = from.direction_z[i];
+  to.t_max[i] = from.t_max[i];
+  to.normal_x[i] = from.normal_x[i];
+  to.normal_y[i] = from.normal_y[i];
+  to.normal_z[i] = from.normal_z[i];
+  to.u[i] = from.u[i];
+  to.v[i] = from.v[i];
+  to.triangle[i] = from.triangle[i];
+  to.object[i] = from.object[i];
+}
+
+void copy_hits(const optics::RayPacket16& from, ShadeLanes& to) {
+  for (int i = 0; i < kLanes; ++i) {
+    to.position_x[i] = from.origin_x[i] + from.t_max[i] * from.direction_x[i];
+    to.position_y[i] = from.origin_y[i] + from.t_max[i] * from.direction_y[i];
+    to.position_z[i] = from.origin_z[i] + from.t_max[i] * from.direction_z[i];
+  }
+  std::copy_n(from.direction_x, kLanes, to.direction_x);
+  std::copy_n(from.direction_y, kLanes, to.direction_y);
+  std::copy_n(from.direction_z, kLanes, to.direction_z);
+  std::copy_n(from.normal_x, kLanes, to.normal_x);
+  std::copy_n(from.normal_y, kLanes, to.normal_y);
+  std::copy_n(from.normal_z, kLanes, to.normal_z);
+  std::copy_n(from.u, kLanes, to.u);
+  std::copy_n(from.v, kLanes, to.v);
+  std::copy_n(from.object, kLanes, to.object);
+  std::copy_n(from.triangle, kLanes, to.triangle);
+}
+
 }  // namespace
 
 /// All that is known of 16 pixels on their way.
@@ -29,7 +65,10 @@ struct alignas(64) PacketTracer::Packet {
 
 PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
     : scene_(scene), rays_(rays), shading_(scene, textures) {
-  for (const optics::Optic& optic : scene.optics) mirrors_.push_back(std::make_unique<ExactMirror>(optic));
+  for (const optics::Optic& optic : scene.optics) {
+    mirrors_.push_back(std::make_unique<ExactMirror>(optic));
+    tints_.push_back(Float4{optic.reflectance.r, optic.reflectance.g, optic.reflectance.b, 1});
+  }
 }
 
 void PacketTracer::optic_changed(std::size_t index) {
@@ -138,14 +177,7 @@ void PacketTracer::query_skipping_own_optic(Packet& p) const {
         again = true;
         continue;
       }
-      p.second.t_max[i] = query.t_max[i];
-      p.second.normal_x[i] = query.normal_x[i];
-      p.second.normal_y[i] = query.normal_y[i];
-      p.second.normal_z[i] = query.normal_z[i];
-      p.second.u[i] = query.u[i];
-      p.second.v[i] = query.v[i];
-      p.second.triangle[i] = query.triangle[i];
-      p.second.object[i] = query.object[i];
+      copy_hit(query, i, p.second);
       query.t_max[i] = query.t_min[i] - 1;
     }
     if (!again) return;
@@ -155,33 +187,30 @@ void PacketTracer::query_skipping_own_optic(Packet& p) const {
 /// Hands each lane's last hit and the size of its pixel there to shading.
 void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
   const auto pixel_area = float(camera.pixel * camera.pixel);
-  const auto take = [&p](const optics::RayPacket16& from, int i) {
-    p.shade.direction_x[i] = from.direction_x[i];
-    p.shade.direction_y[i] = from.direction_y[i];
-    p.shade.direction_z[i] = from.direction_z[i];
-    p.shade.position_x[i] = from.origin_x[i] + from.t_max[i] * from.direction_x[i];
-    p.shade.position_y[i] = from.origin_y[i] + from.t_max[i] * from.direction_y[i];
-    p.shade.position_z[i] = from.origin_z[i] + from.t_max[i] * from.direction_z[i];
-    p.shade.normal_x[i] = from.normal_x[i];
-    p.shade.normal_y[i] = from.normal_y[i];
-    p.shade.normal_z[i] = from.normal_z[i];
-    p.shade.u[i] = from.u[i];
-    p.shade.v[i] = from.v[i];
-    p.shade.object[i] = from.object[i];
-    p.shade.triangle[i] = from.triangle[i];
-  };
-  for (int i = 0; i < kLanes; ++i) {
-    take(p.first, i);
-    p.shade.footprint[i] = pixel_area * p.first.t_max[i] * p.first.t_max[i];
+  const optics::RayPacket16 &a = p.first, &b = p.second;
+  if (!p.any_mirror) {
+    for (int i = 0; i < kLanes; ++i) p.shade.footprint[i] = pixel_area * a.t_max[i] * a.t_max[i];
+    copy_hits(a, p.shade);
+    return;
   }
-  if (!p.any_mirror) return;
+  bool all = true;
   for (int i = 0; i < kLanes; ++i) {
-    if (p.optic[i] < 0) continue;
-    take(p.second, i);
-    const double depth = p.mirror.out.distance[i] / p.stretch[i], s = p.second.t_max[i];
+    const bool mirrored = p.optic[i] >= 0;
+    all = all && mirrored;
+    const double depth = p.mirror.out.distance[i] / p.stretch[i], s = b.t_max[i];
     const double spread = std::abs(1 + s * (p.mirror.out.wave_sum[i] + s * p.mirror.out.wave_product[i]));
-    p.shade.footprint[i] = float(camera.pixel * camera.pixel * depth * depth / p.stretch[i] * spread);
+    p.shade.footprint[i] = mirrored
+                               ? float(camera.pixel * camera.pixel * depth * depth / p.stretch[i] * spread)
+                               : pixel_area * a.t_max[i] * a.t_max[i];
   }
+  if (all) {
+    copy_hits(b, p.shade);
+    return;
+  }
+  optics::RayPacket16 last = a;
+  for (int i = 0; i < kLanes; ++i)
+    if (p.optic[i] >= 0) copy_hit(b, i, last);
+  copy_hits(last, p.shade);
 }
 
 std::size_t PacketTracer::trace(const CameraRays& camera, const FrameOptions& options,
@@ -189,7 +218,7 @@ std::size_t PacketTracer::trace(const CameraRays& camera, const FrameOptions& op
   Packet p;
   std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   const int samples = std::max(1, options.samples);
-  float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
+  Float4 sum[kLanes] = {};
   std::size_t rays = 0;
   for (int sample = 0; sample < samples; ++sample) {
     primary(camera, pixels, sample_offset(sample, samples), p);
@@ -198,19 +227,18 @@ std::size_t PacketTracer::trace(const CameraRays& camera, const FrameOptions& op
     shading_.shade(p.shade);
     for (int i = 0; i < kLanes; ++i) {
       const bool mirrored = p.optic[i] >= 0;
-      const glm::vec3 tint = mirrored ? scene_.optics[std::size_t(p.optic[i])].reflectance : glm::vec3(1);
-      red[i] += tint.r * p.shade.red[i];
-      green[i] += tint.g * p.shade.green[i];
-      blue[i] += tint.b * p.shade.blue[i];
+      sum[i] += mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
       rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
     }
     if (sample == 0 && options.geometry) write_geometry(camera, pixels, p, frame);
   }
   const float share = 1 / float(samples);
-  for (int i = 0; i < kLanes; ++i)
-    if (pixels.active[i])
-      frame.color[std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i])] =
-          glm::vec4(share * red[i], share * green[i], share * blue[i], 1);
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i]) continue;
+    const Float4 c = share * sum[i];
+    frame.color[std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i])] =
+        glm::vec4(c[0], c[1], c[2], 1);
+  }
   return rays;
 }
 

@@ -61,6 +61,7 @@ class PacketTracer {
   const optics::RayScene& rays_;
   ShadingScene shading_;
   std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic
+  std::vector<Float4> tints_;                          ///< reflectance of each optic
 };
 
 }  // namespace catoptra::render

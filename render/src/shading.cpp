@@ -49,6 +49,10 @@ inline float fast_log2(float x) {
   return exponent + 2.8853901f * r * (1 + q * (1 / 3.0f + q * (1 / 5.0f + q * (1 / 7.0f))));
 }
 
+inline Float4 float4(const glm::vec3& v) {
+  return Float4{v.x, v.y, v.z, 0};
+}
+
 }  // namespace
 
 optics::AlphaTest make_alpha_test(const cad_import::TriangleMesh& mesh,
@@ -92,10 +96,10 @@ glm::vec3 sky_radiance(const SkyImage& sky, const Environment& environment, cons
 struct alignas(64) ShadingScene::Gathered {
   const ShadeMaterial* material[ShadeLanes::kLanes];
   float nx[ShadeLanes::kLanes], ny[ShadeLanes::kLanes], nz[ShadeLanes::kLanes];
-  float s[ShadeLanes::kLanes], t[ShadeLanes::kLanes];
-  float st_area[ShadeLanes::kLanes];  ///< twice the triangle's area in texture coordinates
-  float red[ShadeLanes::kLanes], green[ShadeLanes::kLanes],
-      blue[ShadeLanes::kLanes];  ///< irradiance, then radiance
+  /// Texels per unit of area on the surface, times twice the triangle's area.
+  float texels[ShadeLanes::kLanes];
+  float red[ShadeLanes::kLanes], green[ShadeLanes::kLanes], blue[ShadeLanes::kLanes];  ///< irradiance
+  TextureLanes texture;
 };
 
 ShadingScene::ShadingScene(const Scene& scene, const SceneTextures& textures)
@@ -105,8 +109,8 @@ ShadingScene::ShadingScene(const Scene& scene, const SceneTextures& textures)
     add_surroundings(scene.surroundings[m], textures.textures[m]);
   for (std::size_t i = 0; i < scene.optics.size(); ++i) {
     optic_material_.push_back(static_cast<std::uint32_t>(materials_.size()));
-    materials_.push_back({scene.optics[i].reflectance, glm::vec3(0)});
-    materials_.push_back({glm::vec3(kOpticBackAlbedo), glm::vec3(0)});
+    materials_.push_back({float4(scene.optics[i].reflectance), Float4{}});
+    materials_.push_back({float4(glm::vec3(kOpticBackAlbedo)), Float4{}});
     objects_.emplace_back();
     pack_optic(i);
   }
@@ -119,8 +123,8 @@ void ShadingScene::add_surroundings(const cad_import::TriangleMesh& mesh,
   for (const MipTexture& texture : textures) linear.emplace_back(texture);
   const auto first_material = static_cast<std::uint32_t>(materials_.size());
   for (const cad_import::Material& m : mesh.materials)
-    materials_.push_back(
-        {m.base_color, m.emissive, m.texture < 0 ? nullptr : &linear[std::size_t(m.texture)], m.wrap});
+    materials_.push_back({float4(m.base_color), float4(m.emissive),
+                          m.texture < 0 ? nullptr : &linear[std::size_t(m.texture)], m.wrap});
   Object& object = objects_.emplace_back();
   object.triangles.resize(mesh.triangles.size());
   const bool textured = mesh.texture_coordinates.size() == mesh.positions.size();
@@ -158,9 +162,11 @@ void ShadingScene::optic_changed(std::size_t index) {
 void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
   for (int i = 0; i < ShadeLanes::kLanes; ++i) {
     g.material[i] = nullptr;
+    g.texture.texture[i] = nullptr;
+    g.texture.s[i] = g.texture.t[i] = g.texels[i] = 0;
+    g.texture.wrap[i] = 0;
     g.nx[i] = g.ny[i] = 0;
     g.nz[i] = 1;
-    g.s[i] = g.t[i] = g.st_area[i] = 0;
     if (!lanes.active[i] || lanes.object[i] == optics::kNoHit) continue;
     const Object& object = objects_[lanes.object[i]];
     const ShadeTriangle& tri = object.triangles[lanes.triangle[i]];
@@ -178,9 +184,11 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
     g.material[i] = &material;
     if (!material.texture) continue;
     const glm::vec2 e1 = tri.st[1] - tri.st[0], e2 = tri.st[2] - tri.st[0];
-    g.s[i] = tri.st[0].x + lanes.u[i] * e1.x + lanes.v[i] * e2.x;
-    g.t[i] = tri.st[0].y + lanes.u[i] * e1.y + lanes.v[i] * e2.y;
-    g.st_area[i] = std::abs(e1.x * e2.y - e1.y * e2.x);
+    g.texture.texture[i] = material.texture;
+    g.texture.wrap[i] = std::int32_t(material.wrap);
+    g.texture.s[i] = tri.st[0].x + lanes.u[i] * e1.x + lanes.v[i] * e2.x;
+    g.texture.t[i] = tri.st[0].y + lanes.u[i] * e1.y + lanes.v[i] * e2.y;
+    g.texels[i] = std::abs(e1.x * e2.y - e1.y * e2.x) * material.texture->texel_count();
   }
 }
 
@@ -220,26 +228,24 @@ void ShadingScene::add_lights(const ShadeLanes& lanes, Gathered& g) const {
   }
 }
 
-/// Irradiance to radiance: albedo (material x texture at the footprint's level of detail) and emission.
-void ShadingScene::apply_textures(const ShadeLanes& lanes, Gathered& g) const {
+/// Level of detail from the texels under the pixel: area on the surface x texels per area (both of the
+/// triangle's areas, in space and in the texture, are doubled).
+void ShadingScene::set_detail(const ShadeLanes& lanes, Gathered& g) {
   for (int i = 0; i < ShadeLanes::kLanes; ++i) {
-    if (!g.material[i]) continue;
-    const ShadeMaterial& m = *g.material[i];
-    glm::vec3 albedo = m.base;
-    if (m.texture) {
-      // Texels under the pixel = area on the surface x texels per area. Both areas of the triangle are
-      // doubled.
-      const float facing =
-          std::abs(lanes.normal_x[i] * lanes.direction_x[i] + lanes.normal_y[i] * lanes.direction_y[i] +
-                   lanes.normal_z[i] * lanes.direction_z[i]);
-      const float texels =
-          lanes.footprint[i] * g.st_area[i] * m.texture->texel_count() / std::max(facing, 1e-30f);
-      const Float4 c = m.texture->sample(g.s[i], g.t[i], 0.5f * fast_log2(texels), m.wrap);
-      albedo *= glm::vec3(c[0], c[1], c[2]);
-    }
-    g.red[i] = m.emissive.r + albedo.r * g.red[i];
-    g.green[i] = m.emissive.g + albedo.g * g.green[i];
-    g.blue[i] = m.emissive.b + albedo.b * g.blue[i];
+    const float facing =
+        std::abs(lanes.normal_x[i] * lanes.direction_x[i] + lanes.normal_y[i] * lanes.direction_y[i] +
+                 lanes.normal_z[i] * lanes.direction_z[i]);
+    g.texture.lod[i] = 0.5f * fast_log2(lanes.footprint[i] * g.texels[i] / std::max(facing, 1e-30f));
+  }
+}
+
+void ShadingScene::show_sky(const Gathered& g, ShadeLanes& lanes) const {
+  const Float4 plain = float4(scene_.environment.color);
+  for (int i = 0; i < ShadeLanes::kLanes; ++i) {
+    if (g.material[i]) continue;
+    const glm::vec3 direction(lanes.direction_x[i], lanes.direction_y[i], lanes.direction_z[i]);
+    const bool pictured = textures_.sky.width > 0 && lanes.active[i];
+    lanes.radiance[i] = pictured ? float4(sky_radiance(textures_.sky, scene_.environment, direction)) : plain;
   }
 }
 
@@ -247,22 +253,17 @@ void ShadingScene::shade(ShadeLanes& lanes) const {
   Gathered g;
   gather(lanes, g);
   add_lights(lanes, g);
-  apply_textures(lanes, g);
-  const glm::vec3 plain = scene_.environment.color;
-  const bool pictured = textures_.sky.width > 0;
+  set_detail(lanes, g);
+  sample_textures(g.texture);
+  bool any_sky = false;
   for (int i = 0; i < ShadeLanes::kLanes; ++i) {
-    if (!g.material[i]) {
-      const glm::vec3 direction(lanes.direction_x[i], lanes.direction_y[i], lanes.direction_z[i]);
-      const glm::vec3 c =
-          pictured && lanes.active[i] ? sky_radiance(textures_.sky, scene_.environment, direction) : plain;
-      g.red[i] = c.r;
-      g.green[i] = c.g;
-      g.blue[i] = c.b;
-    }
-    lanes.red[i] = g.red[i];
-    lanes.green[i] = g.green[i];
-    lanes.blue[i] = g.blue[i];
+    const ShadeMaterial* m = g.material[i];
+    any_sky = any_sky || !m;
+    if (!m) continue;
+    const Float4 irradiance = {g.red[i], g.green[i], g.blue[i], 0};
+    lanes.radiance[i] = m->emissive + m->base * g.texture.color[i] * irradiance;
   }
+  if (any_sky) show_sky(g, lanes);
 }
 
 }  // namespace catoptra::render

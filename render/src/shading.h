@@ -37,7 +37,7 @@ struct alignas(64) ShadeTriangle {
 };
 
 struct ShadeMaterial {
-  glm::vec3 base{0.8f}, emissive{0};
+  Float4 base, emissive;
   const LinearTexture* texture = nullptr;
   cad_import::TextureWrap wrap = cad_import::TextureWrap::repeat;
 };
@@ -53,8 +53,8 @@ struct alignas(64) ShadeLanes {
   float footprint[kLanes];  ///< see shade()
   std::uint32_t object[kLanes], triangle[kLanes];
   bool active[kLanes];
-  // Out: linear radiance towards the eye.
-  float red[kLanes], green[kLanes], blue[kLanes];
+  // Out: linear radiance towards the eye, RGB and nothing.
+  Float4 radiance[kLanes];
 };
 
 /// The surroundings and optics of a scene, packed for shading.
@@ -82,7 +82,8 @@ class ShadingScene {
   void pack_optic(std::size_t index);
   void gather(const ShadeLanes& lanes, Gathered& g) const;
   void add_lights(const ShadeLanes& lanes, Gathered& g) const;
-  void apply_textures(const ShadeLanes& lanes, Gathered& g) const;
+  static void set_detail(const ShadeLanes& lanes, Gathered& g);
+  void show_sky(const Gathered& g, ShadeLanes& lanes) const;
 
   const Scene& scene_;
   const SceneTextures& textures_;

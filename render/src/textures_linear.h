@@ -1,4 +1,5 @@
-// Textures as the ray tracer reads them: linear light, 16 bits a channel, trilinear.
+// Textures as the ray tracer reads them: linear light, 16 bits a channel, trilinear, sixteen look-ups at
+// once.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,8 @@ namespace catoptra::render {
 /// Four floats that the compiler keeps in one vector register.
 using Float4 = float __attribute__((vector_size(16)));
 
+struct TextureLanes;
+
 /// A mip pyramid of linear RGBA. 16 bits hold every 8-bit sRGB value to 1/40 of its step, in half the memory
 /// of floats.
 class LinearTexture {
@@ -21,25 +24,34 @@ class LinearTexture {
   /// Number of texels of the finest level.
   [[nodiscard]] float texel_count() const { return texel_count_; }
 
-  /// Colour at texture coordinates (s, t) and level of detail `lod` (0: the finest level; clamped to those
-  /// there are). Coordinates that are not finite give the first texel.
-  [[nodiscard]] Float4 sample(float s, float t, float lod, cad_import::TextureWrap wrap) const;
-
  private:
+  friend void sample_textures(TextureLanes& lanes);
+
   struct Level {
     int width, height;
-    std::size_t first;  ///< index of the level's first texel
+    int first;  ///< index of the level's first texel
   };
   struct Texel {
     std::uint16_t rgba[4];
   };
 
-  [[nodiscard]] Float4 bilinear(const Level& level, float s, float t, cad_import::TextureWrap wrap) const;
-  [[nodiscard]] Float4 texel(std::size_t index) const;
-
   float texel_count_ = 1;
   std::vector<Level> levels_;
   std::vector<Texel> texels_;
 };
+
+/// Up to 16 look-ups, each in a texture of its own.
+struct alignas(64) TextureLanes {
+  static constexpr int kLanes = 16;
+  // In. Coordinates that are not finite are taken for 0.
+  const LinearTexture* texture[kLanes];  ///< null: none, the result is white
+  float s[kLanes], t[kLanes];
+  float lod[kLanes];          ///< level of detail, 0: the finest; clamped to the levels there are
+  std::int32_t wrap[kLanes];  ///< of cad_import::TextureWrap
+  // Out: linear RGBA.
+  Float4 color[kLanes];
+};
+
+void sample_textures(TextureLanes& lanes);
 
 }  // namespace catoptra::render

@@ -125,7 +125,18 @@ class LinearTexture : public testing::Test {
     return t;
   }
   float red(float s, float lod, cad_import::TextureWrap wrap) const {
-    return texture_.sample(s, 0.5f, lod, wrap)[0];
+    render::TextureLanes lanes{};
+    for (int i = 0; i < render::TextureLanes::kLanes; ++i) {
+      lanes.texture[i] = i % 2 ? &texture_ : nullptr;
+      lanes.s[i] = s;
+      lanes.t[i] = 0.5f;
+      lanes.lod[i] = lod;
+      lanes.wrap[i] = std::int32_t(wrap);
+    }
+    render::sample_textures(lanes);
+    EXPECT_NEAR(lanes.color[0][0], 1, 1e-6) << "no texture: white";
+    EXPECT_EQ(lanes.color[1][0], lanes.color[15][0]);
+    return lanes.color[1][0];
   }
   render::LinearTexture texture_;
 };
