@@ -55,6 +55,23 @@ TEST(RenderCommand, ResolutionAndReport) {
   EXPECT_EQ(frame.position.size(), 40u * 30u) << "an .exr with a report holds the geometry layers";
 }
 
+TEST(RenderCommand, OneThreadAndFourGiveTheSameBytes) {
+  const TemporaryFolder folder;
+  const std::string scene = write_test_scene(folder).string();
+  for (const char* mode : kModes) {
+    std::string bytes[2];
+    for (int i = 0; i < 2; ++i) {
+      const auto picture = folder / ("threads" + std::to_string(i) + ".png");
+      ASSERT_EQ(
+          run_catoptra({"render", scene, "-o", picture.string(), "--mode", mode, "--threads", i ? "4" : "1"})
+              .code,
+          0);
+      bytes[i] = read_file(picture);
+    }
+    EXPECT_EQ(bytes[0], bytes[1]) << mode;
+  }
+}
+
 TEST(RenderCommand, PictureToStandardOutputIsPng) {
   const TemporaryFolder folder;
   const CommandResult result =
