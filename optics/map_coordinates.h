@@ -31,4 +31,16 @@ enum class MapInterpolation {
     const Optic& optic, std::span<const VertexHit> hits, const VirtualView& view,
     MapInterpolation interpolation = MapInterpolation::fitted);
 
+/// The same for a lens, one per vertex of the side entered.
+[[nodiscard]] std::vector<glm::dvec3> map_coordinates(
+    const Optic& lens, LensSide entered, std::span<const VertexHit> hits, const VirtualView& view,
+    MapInterpolation interpolation = MapInterpolation::fitted);
+
+/// Map coordinates of a further wavelength: what `hits` show, with the denominators q of `reference` (the
+/// coordinates of the same vertices at another wavelength, nearly the same map). Vertices that show nothing
+/// keep the reference's. Throws catoptra::Error where the counts differ.
+[[nodiscard]] std::vector<glm::dvec3> map_coordinates_like(std::span<const glm::dvec3> reference,
+                                                           std::span<const VertexHit> hits,
+                                                           const VirtualView& view);
+
 }  // namespace catoptra::optics

@@ -61,4 +61,11 @@ struct VirtualView {
                                             const cad_import::BoundingBox& scene_bounds,
                                             double margin = 0.01);
 
+/// The same for a lens entered from side `entered`. `hits` holds the rays of one wavelength, one per vertex
+/// of that side, or those of several wavelengths one list after the other: one volume then holds them all.
+[[nodiscard]] VirtualView make_virtual_view(const Optic& lens, LensSide entered,
+                                            std::span<const VertexHit> hits,
+                                            const cad_import::BoundingBox& scene_bounds,
+                                            double margin = 0.01);
+
 }  // namespace catoptra::optics

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x2.hpp>
 
-#include "optics/reflection.h"
 #include "optics/src/homography.h"
 
 namespace catoptra::optics {
@@ -57,9 +56,8 @@ struct Centre {
 Centre centre_of(const MapProblem& problem) {
   Centre centre;
   for (const std::size_t i : problem.facing) {
-    centre.position +=
-        problem.optic.mesh.vertices[i].position_mm / static_cast<double>(problem.facing.size());
-    centre.normal += problem.optic.mesh.vertices[i].normal;
+    centre.position += problem.mesh.vertices[i].position_mm / static_cast<double>(problem.facing.size());
+    centre.normal += problem.mesh.vertices[i].normal;
   }
   return centre;
 }
@@ -84,7 +82,7 @@ std::vector<Place> tangent_plane_places(const MapProblem& problem) {
   const auto [e1, e2] = axes_across(centre.normal);
   std::vector<Place> places;
   for (const std::size_t i : problem.facing) {
-    const glm::dvec3 p = problem.optic.mesh.vertices[i].position_mm - centre.position;
+    const glm::dvec3 p = problem.mesh.vertices[i].position_mm - centre.position;
     places.push_back({{glm::dot(p, e1), glm::dot(p, e2)}, 1});
   }
   scale_to_unit(places);
@@ -95,8 +93,8 @@ std::vector<Place> tangent_plane_places(const MapProblem& problem) {
 ViewpointFit eye_of(const MapProblem& problem) {
   std::vector<glm::dvec3> points, incident;
   for (const std::size_t i : problem.facing) {
-    points.push_back(problem.optic.mesh.vertices[i].position_mm);
-    incident.push_back(reflect(problem.hits[i].direction, problem.optic.mesh.vertices[i].normal));
+    points.push_back(problem.mesh.vertices[i].position_mm);
+    incident.push_back(problem.hits[i].from_eye);
   }
   return fit_viewpoint(points, incident);
 }
@@ -107,7 +105,7 @@ std::vector<Place> eye_places(const MapProblem& problem, const glm::dvec3& eye_m
   const auto [e1, e2] = axes_across(axis);
   std::vector<Place> places;
   for (const std::size_t i : problem.facing) {
-    const glm::dvec3 p = problem.optic.mesh.vertices[i].position_mm - eye_mm;
+    const glm::dvec3 p = problem.mesh.vertices[i].position_mm - eye_mm;
     const double depth = glm::dot(p, axis) / glm::dot(axis, axis);
     if (!(depth > 0.1)) return tangent_plane_places(problem);  // an eye amid the optic has no such picture
     places.push_back({glm::dvec2(glm::dot(p, e1), glm::dot(p, e2)) / depth, depth});
@@ -145,19 +143,10 @@ double usual_distance(const MapProblem& problem) {
 }
 
 // How the place of the map (in lengths) changes while the eye's ray moves from the vertex: a matrix that
-// takes the movement of a point of the ray near the vertex, mm. The ray then meets the surface in the tangent
-// plane, where the normal turns by the curvatures (ray differentials: Igehy, SIGGRAPH 1999, sections 3.1
-// and 3.2).
-glm::dmat3x2 map_jacobian(const MapProblem& problem, std::size_t i, const glm::dvec3& eye_mm,
-                          double distance_mm) {
-  const auto& vertex = problem.optic.mesh.vertices[i];
+// takes the movement of a point of the ray near the vertex, mm.
+glm::dmat3x2 map_jacobian(const MapProblem& problem, std::size_t i, double distance_mm) {
   const VertexHit& hit = problem.hits[i];
   const VirtualView& view = problem.view;
-  const glm::dvec3 n = vertex.normal, ray = vertex.position_mm - eye_mm;
-  const double length = glm::length(ray);
-  const glm::dvec3 d = ray / length;
-  const double cosine = glm::dot(d, n);
-  const glm::dvec3 direction2 = glm::cross(n, vertex.direction1);
   const bool far = !std::isfinite(distance_mm);
   const glm::dvec3 h = far ? view.project_direction(hit.direction)
                            : view.project_point(hit.surface_point_mm + distance_mm * hit.direction);
@@ -166,15 +155,8 @@ glm::dmat3x2 map_jacobian(const MapProblem& problem, std::size_t i, const glm::d
 
   glm::dmat3x2 jacobian{};
   for (int axis = 0; axis < 3; ++axis) {
-    glm::dvec3 move{0};
-    move[axis] = 1;
-    const glm::dvec3 d_direction = (move - d[axis] * d) / length;
-    const glm::dvec3 d_point = move - d * (n[axis] / cosine);
-    const glm::dvec3 d_normal = vertex.k1 * glm::dot(d_point, vertex.direction1) * vertex.direction1 +
-                                vertex.k2 * glm::dot(d_point, direction2) * direction2;
-    const glm::dvec3 d_reflected =
-        d_direction - 2 * (glm::dot(d_direction, n) + glm::dot(d, d_normal)) * n - 2 * cosine * d_normal;
-    const glm::dvec3 moved = far ? d_reflected : d_point + distance_mm * d_reflected;
+    const glm::dvec3& turned = hit.differential.direction[axis];
+    const glm::dvec3 moved = far ? turned : hit.differential.point[axis] + distance_mm * turned;
     // A place is (right, up) / depth; at a parallel projection the depth is 1 whatever moves.
     const double d_depth =
         view.projection == MapProjection::perspective ? glm::dot(moved, view.direction) : 0.0;
@@ -203,16 +185,16 @@ double limited_mean(double x, double y) {
 // so that m'(0) = q_b / q_a (m_b - m_a) and m'(1) = q_a / q_b (m_b - m_a). Each end's exact derivative, along
 // m_b - m_a, thus asks for a ratio. On a planar mirror both ask for the same, and so do all edges together.
 std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const MapSample> samples,
-                                   const glm::dvec3& eye_mm, double distance_mm) {
-  const auto& vertices = problem.optic.mesh.vertices;
+                                   double distance_mm) {
+  const auto& vertices = problem.mesh.vertices;
   std::vector<std::size_t> index(vertices.size(), vertices.size());
   std::vector<glm::dmat3x2> jacobians;
   for (std::size_t k = 0; k < problem.facing.size(); ++k) {
     index[problem.facing[k]] = k;
-    jacobians.push_back(map_jacobian(problem, problem.facing[k], eye_mm, distance_mm));
+    jacobians.push_back(map_jacobian(problem, problem.facing[k], distance_mm));
   }
   std::vector<EdgeRatio> edges;
-  for (const auto& triangle : problem.optic.mesh.triangles)
+  for (const auto& triangle : problem.mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const std::size_t i = triangle.vertices[k], j = triangle.vertices[(k + 1) % 3];
       if (index[i] == vertices.size() || index[j] == vertices.size()) continue;
@@ -303,7 +285,7 @@ std::vector<double> fitted_denominators(const MapProblem& problem) {
   // The homography is the solution for a plane, and a good start otherwise.
   std::vector<double> q = denominators_of(places, samples);
   for (double& value : q) value = std::log(value);
-  fit_logarithms(edge_ratios(problem, samples, eye.viewpoint_mm, distance), q);
+  fit_logarithms(edge_ratios(problem, samples, distance), q);
   for (double& value : q) value = std::exp(value);
   return q;
 }

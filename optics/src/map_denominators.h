@@ -6,15 +6,15 @@
 #include <span>
 #include <vector>
 
-#include "optics/optic.h"
 #include "optics/vertex_hits.h"
 #include "optics/virtual_view.h"
+#include "tessellate/optic_arrays.h"
 
 namespace catoptra::optics {
 
 /// What an optic shows, vertex by vertex.
 struct MapProblem {
-  const Optic& optic;
+  const tessellate::OpticArrays& mesh;  ///< of the mirror, or of the side of a lens that is entered
   std::span<const VertexHit> hits;
   const VirtualView& view;
   std::span<const std::size_t> facing;  ///< vertices that face the eye

@@ -1,27 +1,109 @@
 #include "optics/vertex_hits.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <glm/geometric.hpp>
 
 #include "cad_import/error.h"
 #include "optics/reflection.h"
+#include "optics/src/ray_differentials.h"
 
 namespace catoptra::optics {
+namespace {
 
-std::vector<VertexHit> trace_vertices(const Optic& optic, const glm::dvec3& eye_mm, const RayScene& scene) {
-  if (optic.kind != OpticKind::mirror)
-    throw Error("", optic.name, "is a lens, and only mirrors can be traced");
-  std::vector<VertexHit> hits(optic.mesh.vertices.size());
+constexpr std::size_t kVerticesPerTask = 64;  // some 50 us of paths, well above what a task costs
+
+LocalSurface surface_at(const tessellate::OpticVertex& vertex) {
+  return {vertex.normal, vertex.k1, vertex.k2, vertex.direction1};
+}
+
+LocalSurface surface_at(std::span<const cad_import::Face> faces, const ExactHit& hit) {
+  const auto curvature =
+      faces[static_cast<std::size_t>(hit.face)].surface->principal_curvatures(hit.uv.x, hit.uv.y);
+  return {hit.normal, curvature.k1, curvature.k2, curvature.direction1};
+}
+
+// The eye's ray to a vertex.
+struct Arrival {
+  VertexHit hit;
+  double distance_mm = 0;
+};
+
+Arrival arrive(const tessellate::OpticVertex& vertex, const glm::dvec3& eye_mm) {
+  Arrival arrival;
+  const glm::dvec3 towards = vertex.position_mm - eye_mm;
+  arrival.distance_mm = glm::length(towards);
+  arrival.hit.surface_point_mm = vertex.position_mm;
+  arrival.hit.from_eye = towards / arrival.distance_mm;
+  return arrival;
+}
+
+VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const LensTracer& tracer, LensSide entered,
+                         const LensIndices& indices, std::span<const cad_import::Face> exit_faces,
+                         const glm::dvec3& eye_mm) {
+  auto [hit, distance] = arrive(vertex, eye_mm);
+  hit.end = LensPathEnd::missed;
+  hit.transmittance = 0;
+  if (!(glm::dot(hit.from_eye, vertex.normal) < 0)) return hit;
+  const ExactHit entry{distance, vertex.position_mm, vertex.normal, vertex.face, vertex.uv, 0};
+  const LensPath path = tracer.trace_from({eye_mm, hit.from_eye}, entry, entered, indices);
+  hit.end = path.end;
+  if (path.end != LensPathEnd::passed) return hit;
+  hit.faces_eye = true;
+  hit.surface_point_mm = path.exit.position_mm;
+  hit.direction = path.outside;
+  hit.transmittance = path.transmittance;
+  const LocalSurface exit = surface_at(exit_faces, path.exit);
+  const double inwards = indices.around / indices.lens;
+  const auto inside = refracted(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
+                                path.inside, inwards, surface_at(vertex));
+  hit.differential = refracted(transferred(inside, path.inside, path.exit.t_mm, exit.normal), path.inside,
+                               path.outside, 1 / inwards, exit);
+  return hit;
+}
+
+}  // namespace
+
+std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& eye_mm) {
+  if (mirror.kind != OpticKind::mirror)
+    throw Error("", mirror.name, "is a lens, and only mirrors can be traced so");
+  std::vector<VertexHit> hits;
+  hits.reserve(mirror.mesh.vertices.size());
+  for (const tessellate::OpticVertex& vertex : mirror.mesh.vertices) {
+    auto [hit, distance] = arrive(vertex, eye_mm);
+    hit.faces_eye = glm::dot(hit.from_eye, reflecting_normal(mirror, vertex.normal)) < 0;
+    if (hit.faces_eye) {
+      hit.direction = reflect(hit.from_eye, vertex.normal);
+      hit.differential = reflected(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
+                                   surface_at(vertex));
+    }
+    hits.push_back(hit);
+  }
+  return hits;
+}
+
+std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
+                                        double wavelength_nm, const glm::dvec3& eye_mm) {
+  if (lens.kind != OpticKind::lens) throw Error("", lens.name, "is a mirror, and light does not pass it");
+  const auto& vertices = side_of(lens, entered).mesh->vertices;
+  const auto exit_faces = side_of(lens, other_side(entered)).faces;
+  const LensIndices indices = lens_indices(lens, wavelength_nm);
+  std::vector<VertexHit> hits(vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), kVerticesPerTask), [&](const auto& some) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i)
+      hits[i] = refract_vertex(vertices[i], tracer, entered, indices, exit_faces, eye_mm);
+  });
+  return hits;
+}
+
+std::vector<VertexHit> find_scene_hits(std::vector<VertexHit> hits, const RayScene& scene) {
   std::vector<Ray> rays;
   std::vector<std::size_t> vertex_of_ray;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const tessellate::OpticVertex& vertex = optic.mesh.vertices[i];
-    const glm::dvec3 towards = vertex.position_mm - eye_mm;
-    const double distance = glm::length(towards);
-    hits[i].surface_point_mm = vertex.position_mm;
-    hits[i].faces_eye = glm::dot(towards, reflecting_normal(optic, vertex.normal)) < 0;
+    hits[i].scene_hit = {};
     if (!hits[i].faces_eye) continue;
-    hits[i].direction = reflect(towards / distance, vertex.normal);
-    rays.push_back({vertex.position_mm, hits[i].direction, kSelfHitDistance_mm});
+    rays.push_back({hits[i].surface_point_mm, hits[i].direction, kSelfHitDistance_mm});
     vertex_of_ray.push_back(i);
   }
   const std::vector<Hit> scene_hits = scene.intersect(rays, kSurroundings);
@@ -31,6 +113,15 @@ std::vector<VertexHit> trace_vertices(const Optic& optic, const glm::dvec3& eye_
     if (hit.scene_hit) hit.hit_point_mm = rays[k].origin_mm + hit.scene_hit.t_mm * rays[k].direction;
   }
   return hits;
+}
+
+std::vector<VertexHit> trace_vertices(const Optic& optic, const glm::dvec3& eye_mm, const RayScene& scene) {
+  return find_scene_hits(reflect_vertices(optic, eye_mm), scene);
+}
+
+std::vector<VertexHit> trace_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
+                                      double wavelength_nm, const glm::dvec3& eye_mm, const RayScene& scene) {
+  return find_scene_hits(refract_vertices(lens, tracer, entered, wavelength_nm, eye_mm), scene);
 }
 
 }  // namespace catoptra::optics

@@ -18,26 +18,33 @@ constexpr double kWidestFov = 150.0 / 180.0 * 3.14159265358979323846;
 // directions.
 constexpr double kUmbilic = 1e-3;
 
-// The lines of the vertices that face the eye.
+// The lines of the vertices that show something, in one or several wavelengths.
 struct Bundle {
   std::vector<glm::dvec3> points, directions;
-  std::vector<std::size_t> vertices;
+  std::vector<std::size_t> hits;      // index in the hits
+  std::vector<std::size_t> vertices;  // index in the mesh
 };
 
-Bundle bundle_of(const Optic& optic, std::span<const VertexHit> hits) {
-  if (hits.size() != optic.mesh.vertices.size())
-    throw Error("", optic.name,
-                "has " + std::to_string(optic.mesh.vertices.size()) + " vertices but " +
-                    std::to_string(hits.size()) + " traced rays");
+Bundle bundle_of(const Optic& optic, const tessellate::OpticArrays& mesh, std::span<const VertexHit> hits) {
+  const std::size_t count = mesh.vertices.size();
+  if (hits.empty() || count == 0 || hits.size() % count != 0)
+    throw Error(
+        "", optic.name,
+        "has " + std::to_string(count) + " vertices but " + std::to_string(hits.size()) + " traced rays");
   Bundle bundle;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!hits[i].faces_eye) continue;
     bundle.points.push_back(hits[i].surface_point_mm);
     bundle.directions.push_back(hits[i].direction);
-    bundle.vertices.push_back(i);
+    bundle.hits.push_back(i);
+    bundle.vertices.push_back(i % count);
   }
   if (bundle.points.empty())
-    throw Error("", optic.name, "no part of it faces the eye", "move the eye, or flip the mirror");
+    throw Error(
+        "", optic.name,
+        optic.kind == OpticKind::lens ? "no ray from the eye passes it" : "no part of it faces the eye",
+        optic.kind == OpticKind::lens ? "move the eye, or turn the lens"
+                                      : "move the eye, or flip the mirror");
   return bundle;
 }
 
@@ -68,13 +75,13 @@ PlaneTensor tensor_across(const glm::dvec3& axis) {
 // Up along the direction of least curvature (paper 4.3), averaged over the vertices that face the eye with
 // the difference of the curvatures as weight. Planes and spheres have none: there up is across the longer
 // side of the optic.
-glm::dvec3 up_vector(const Optic& optic, const Bundle& bundle, const glm::dvec3& axis) {
+glm::dvec3 up_vector(const tessellate::OpticArrays& mesh, const Bundle& bundle, const glm::dvec3& axis) {
   PlaneTensor most_curved = tensor_across(axis), extent = tensor_across(axis);
   double curvature = 0;
   glm::dvec3 centroid{0};
   for (const auto& p : bundle.points) centroid += p / static_cast<double>(bundle.points.size());
   for (const std::size_t i : bundle.vertices) {
-    const auto& vertex = optic.mesh.vertices[i];
+    const auto& vertex = mesh.vertices[i];
     most_curved.add(vertex.direction1, vertex.k1 - vertex.k2);
     extent.add(vertex.position_mm - centroid, 1);
     curvature += std::abs(vertex.k1) + std::abs(vertex.k2);
@@ -159,7 +166,7 @@ double near_beyond_viewpoint(const VirtualView& view, const Bundle& bundle, std:
     const double along = glm::dot(d, view.direction);
     miss = std::max(miss, glm::length(glm::cross(bundle.points[i] - view.viewpoint_mm, d)));
     if (along > 0) slope = std::max(slope, glm::length(d - along * view.direction) / along);
-    const VertexHit& hit = hits[bundle.vertices[i]];
+    const VertexHit& hit = hits[bundle.hits[i]];
     const double depth = glm::dot(hit.hit_point_mm - view.viewpoint_mm, view.direction);
     if (hit.scene_hit && depth > 0) nearest_hit = std::min(nearest_hit, depth);
   }
@@ -200,11 +207,10 @@ void set_perspective_sides(VirtualView& view, const Bundle& bundle, double margi
                   std::atan(view.top) - std::atan(view.bottom)};
 }
 
-}  // namespace
-
-VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hits,
-                              const cad_import::BoundingBox& scene_bounds, double margin) {
-  const Bundle bundle = bundle_of(optic, hits);
+VirtualView view_of_mesh(const Optic& optic, const tessellate::OpticArrays& mesh,
+                         std::span<const VertexHit> hits, const cad_import::BoundingBox& scene_bounds,
+                         double margin) {
+  const Bundle bundle = bundle_of(optic, mesh, hits);
   const ViewpointFit fit = fit_viewpoint(bundle.points, bundle.directions);
   VirtualView view;
   view.viewpoint_mm = fit.viewpoint_mm;
@@ -212,7 +218,7 @@ VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hit
   glm::dvec3 sum{0};
   for (const auto& d : bundle.directions) sum += d;
   view.direction = glm::length(sum) > 0 ? glm::normalize(sum) : bundle.directions[0];
-  view.up = up_vector(optic, bundle, view.direction);
+  view.up = up_vector(mesh, bundle, view.direction);
   view.right = glm::cross(view.direction, view.up);
   if (fit.parallel) {
     make_parallel(view, bundle, scene_bounds, margin);
@@ -237,6 +243,18 @@ VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hit
   set_far(view, scene_bounds);
   set_perspective_sides(view, bundle, margin);
   return view;
+}
+
+}  // namespace
+
+VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hits,
+                              const cad_import::BoundingBox& scene_bounds, double margin) {
+  return view_of_mesh(optic, optic.mesh, hits, scene_bounds, margin);
+}
+
+VirtualView make_virtual_view(const Optic& lens, LensSide entered, std::span<const VertexHit> hits,
+                              const cad_import::BoundingBox& scene_bounds, double margin) {
+  return view_of_mesh(lens, *side_of(lens, entered).mesh, hits, scene_bounds, margin);
 }
 
 glm::dmat4 VirtualView::view_matrix() const {
