@@ -30,22 +30,24 @@ class TrimCurve {
   [[nodiscard]] virtual glm::dvec3 point(double t) const = 0;
 };
 
-/// One edge of a loop. Faces that share an edge hold the same `edge` number, so that a mesh can share its vertices.
+/// One edge of a loop. Faces that share an edge hold the same `edge` number, so that a mesh can share its
+/// vertices.
 struct EdgeUse {
-  int edge = -1;            ///< index of the topological edge within the CadModel
-  int start_vertex = -1;    ///< index of the topological vertex where this use starts, within the CadModel
-  int end_vertex = -1;      ///< ... and where it ends
-  double t_begin = 0;       ///< parameter range of the curve, t_begin < t_end
+  int edge = -1;          ///< index of the topological edge within the CadModel
+  int start_vertex = -1;  ///< index of the topological vertex where this use starts, within the CadModel
+  int end_vertex = -1;    ///< ... and where it ends
+  double t_begin = 0;     ///< parameter range of the curve, t_begin < t_end
   double t_end = 1;
   bool reversed = false;    ///< the loop runs from t_end to t_begin
   bool degenerate = false;  ///< a curve in (u, v) that is one point in space (pole of a sphere)
   bool seam = false;        ///< used twice by this face (closed surface); each use has its own uv curve
-  double tolerance_mm = 0;  ///< how far the space curve is from the surface: what the file says or, if more, what was measured
+  double tolerance_mm =
+      0;  ///< how far the space curve is from the surface: what the file says or, if more, what was measured
   std::shared_ptr<const TrimCurve> curve;
 };
 
-/// A closed boundary in (u, v): counter-clockwise for the outer one and clockwise for holes, as seen with du x dv
-/// towards the viewer (whatever the face's orientation).
+/// A closed boundary in (u, v): counter-clockwise for the outer one and clockwise for holes, as seen with du
+/// x dv towards the viewer (whatever the face's orientation).
 struct TrimLoop {
   std::vector<EdgeUse> edges;
   bool outer = true;
@@ -85,7 +87,8 @@ struct Body {
 struct CadModel {
   std::string file;
   std::string format;  ///< "STEP", "IGES", "BREP"
-  std::string unit;    ///< the file's length unit as recognised: "mm", "m", "in", ...; "unknown" where it has none
+  std::string
+      unit;  ///< the file's length unit as recognised: "mm", "m", "in", ...; "unknown" where it has none
   std::vector<Body> bodies;
   std::vector<Face> faces;
   BoundingBox bounds;

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "cad_import/error.h"
+#include "cad_import/import.h"
 
 namespace catoptra::cad_import {
 namespace {
@@ -111,6 +111,15 @@ std::string normalized_unit(std::string_view unit) {
   for (const auto& [name, symbol] : kNames)
     if (lower == name) return std::string(symbol);
   return lower;
+}
+
+std::optional<double> file_unit_in_mm(std::string_view unit) {
+  // Source: NIST SP 811 (2008), appendix B.8; the inch is 25.4 mm exactly.
+  if (unit == "km") return 1e6;
+  if (unit == "mi") return 1609344.0;
+  if (unit == "mil") return 0.0254;
+  if (unit == "uin") return 25.4e-6;
+  return unit_in_mm(unit);
 }
 
 std::string decoded_step_string(std::string_view text) {

@@ -55,7 +55,7 @@ CadModel import_with_kernel(const std::filesystem::path& file, const ImportOptio
   const KernelSession session;
   const Handle(ImportProgress) progress = new ImportProgress(options, name);
   KernelDocument document = read(file, sniff_format(file), *progress);
-  const double factor = options.scale * (options.unit ? unit_mm / document.unit_mm : 1);
+  const double factor = options.scale * (options.unit ? unit_mm / document.unit_mm.value_or(1) : 1);
   const glm::dmat4 placement =
       options.placement * glm::dmat4(glm::dvec4(factor, 0, 0, 0), glm::dvec4(0, factor, 0, 0),
                                      glm::dvec4(0, 0, factor, 0), glm::dvec4(0, 0, 0, 1));
@@ -66,6 +66,9 @@ CadModel import_with_kernel(const std::filesystem::path& file, const ImportOptio
     throw ImportError(name, "", "no face in it" + first,
                       "points, curves and empty assemblies cannot reflect or refract");
   }
+  if (options.unit && !document.unit_mm)
+    model.warnings.push_back("the file's own unit \"" + document.unit + "\" is not known, so that unit = \"" +
+                             *options.unit + "\" was taken for mm of the reader");
   if (std::string warning = size_warning(model.bounds); !warning.empty())
     model.warnings.push_back(std::move(warning));
   for (const std::string& message : session.messages()) model.warnings.push_back("reader: " + message);

@@ -27,8 +27,8 @@ struct KernelBody {
 /// Lengths are mm as the kernel converted them from the file's unit.
 struct KernelDocument {
   std::string format;
-  std::string unit = "unknown";  // as recognised
-  double unit_mm = 1;            // what the kernel multiplied the file's numbers by
+  std::string unit = "unknown";       // as recognised
+  std::optional<double> unit_mm = 1;  // what the kernel multiplied the file's numbers by, where we know
   std::vector<KernelBody> bodies;
   // Keyed by the shape without location and orientation, so that all instances share them.
   std::unordered_map<const TopoDS_TShape*, std::string> names;

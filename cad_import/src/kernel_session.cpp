@@ -21,7 +21,8 @@ void MessageCollector::send(const TCollection_AsciiString& text, const Message_G
   if (gravity < Message_Alarm || messages_.size() >= kMaxMessages) return;
   std::string line(text.ToCString(), std::size_t(text.Length()));
   std::ranges::replace(line, '\n', ' ');
-  if (!line.empty() && std::ranges::find(messages_, line) == messages_.end()) messages_.push_back(std::move(line));
+  if (!line.empty() && std::ranges::find(messages_, line) == messages_.end())
+    messages_.push_back(std::move(line));
 }
 
 KernelSession::KernelSession() : lock_(kernel_mutex()), collector_(new MessageCollector) {

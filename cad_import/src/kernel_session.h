@@ -1,4 +1,5 @@
-// Fence around the CAD kernel's process-wide state: one session at a time, its settings and message printers put back.
+// Fence around the CAD kernel's process-wide state: one session at a time, its settings and message printers
+// put back.
 #pragma once
 
 #include <Message_Printer.hxx>
@@ -25,8 +26,9 @@ class MessageCollector : public Message_Printer {
   mutable std::vector<std::string> messages_;
 };
 
-/// While it lives, this thread alone reads, writes or meshes with the kernel; lengths come out in mm, messages are
-/// collected. Its end restores the settings and printers it found. Not for evaluation: that needs no kernel state.
+/// While it lives, this thread alone reads, writes or meshes with the kernel; lengths come out in mm,
+/// messages are collected. Its end restores the settings and printers it found. Not for evaluation: that
+/// needs no kernel state.
 class KernelSession {
  public:
   KernelSession();

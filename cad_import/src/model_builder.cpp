@@ -22,9 +22,9 @@ namespace {
 // A whole sphere or torus may come without any boundary: the kernel makes the natural one.
 TopoDS_Face with_boundary(const TopoDS_Face& face) {
   if (TopExp_Explorer(face, TopAbs_WIRE).More()) return face;
-  const BRepBuilderAPI_MakeFace maker(BRep_Tool::Surface(face), BRep_Tool::Tolerance(face));
+  BRepBuilderAPI_MakeFace maker(BRep_Tool::Surface(face), BRep_Tool::Tolerance(face));
   if (!maker.IsDone()) return face;
-  return TopoDS::Face(const_cast<BRepBuilderAPI_MakeFace&>(maker).Face().Oriented(face.Orientation()));
+  return TopoDS::Face(maker.Face().Oriented(face.Orientation()));
 }
 
 ParameterRange range_of(const TopoDS_Face& face) {
@@ -70,7 +70,7 @@ class Builder {
   };
 
   void list_faces(const KernelBody& kernel_body) {
-    BRepLib::SameParameter(kernel_body.shape, kTolerance_mm);
+    BRepLib::SameParameter(kernel_body.shape, kSameParameterMm);
     Body body;
     body.name = kernel_body.name;
     body.color = kernel_body.color;
@@ -144,7 +144,7 @@ class Builder {
       model_.warnings.push_back(std::move(warning));
   }
 
-  static constexpr double kTolerance_mm = 1e-7;
+  static constexpr double kSameParameterMm = 1e-7;
 
   const KernelDocument& document_;
   glm::dmat4 placement_;

@@ -28,7 +28,7 @@ void read_unit(const Handle(IGESData_IGESModel) & model, KernelDocument& documen
     document.unit = normalized_unit(global.UnitName()->ToCString());
   else if (flag > 0 && flag < int(kUnitOfFlag.size()))
     document.unit = kUnitOfFlag[std::size_t(flag)];
-  if (const auto mm = unit_in_mm(document.unit)) document.unit_mm = *mm;
+  document.unit_mm = file_unit_in_mm(document.unit);
 }
 
 // Entity labels: the name property (type 406, form 15) or the eight-letter label of the directory entry.

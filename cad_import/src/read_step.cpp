@@ -33,7 +33,7 @@ void read_units(STEPCAFControl_Reader& reader, KernelDocument& document) {
   }
   if (first.empty()) return;
   document.unit = normalized_unit(first);
-  if (const auto mm = unit_in_mm(document.unit)) document.unit_mm = *mm;
+  document.unit_mm = file_unit_in_mm(document.unit);
 }
 
 // Names of faces, shells and solids live on their STEP entities; the kernel's document keeps those of parts

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <thread>
 
@@ -16,6 +17,12 @@ namespace catoptra::cad_import {
 namespace {
 
 constexpr unsigned kSeed = 20261122;
+
+// A generator of the test's own, its seed printed.
+std::mt19937 seeded(unsigned offset = 0) {
+  std::printf("seed %u\n", kSeed + offset);
+  return std::mt19937(kSeed + offset);
+}
 
 // Largest difference of point, first and second derivatives from `expected`, each relative to the largest
 // value of its kind on the surface: what "relative" means where a derivative passes through zero.
@@ -52,7 +59,7 @@ class RandomBSpline : public testing::TestWithParam<std::tuple<int, int, bool, b
 
 TEST_P(RandomBSpline, AgreesWithKernelTo1e12) {
   const auto [degree_u, degree_v, rational, periodic_u, periodic_v] = GetParam();
-  std::mt19937 random(kSeed + unsigned(degree_u * 100 + degree_v));
+  std::mt19937 random = seeded(unsigned(degree_u * 100 + degree_v));
   for (int round = 0; round < 5; ++round) {
     const auto kernel = test::random_bspline(
         {degree_u, degree_v, 1 + degree_u + round, 2 + degree_v, rational, periodic_u, periodic_v}, random);
@@ -78,7 +85,7 @@ class RandomBSplineByDefinition : public testing::TestWithParam<std::tuple<int, 
 
 TEST_P(RandomBSplineByDefinition, AgreesWithCoxDeBoor) {
   const auto [degree, rational] = GetParam();
-  std::mt19937 random(kSeed + unsigned(degree));
+  std::mt19937 random = seeded(unsigned(degree));
   BSplineData data =
       bspline_data(test::random_bspline({degree, 3, 4, 3, rational, false, false}, random), AffineMap());
   const BSplineSurface own(data, 1);
@@ -93,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Degrees, RandomBSplineByDefinition,
                          testing::Combine(testing::Values(1, 2, 3, 4, 5, 6, 8, 11), testing::Bool()));
 
 TEST(BSplineSurface, PeriodicParametersMayBeGivenInAnyPeriod) {
-  std::mt19937 random(kSeed);
+  std::mt19937 random = seeded();
   const auto own = test::evaluator_of(test::random_bspline({3, 3, 6, 4, true, true, false}, random));
   const ParameterDomain d = own->domain();
   ASSERT_GT(d.u_period, 0);
@@ -107,7 +114,7 @@ TEST(BSplineSurface, PeriodicParametersMayBeGivenInAnyPeriod) {
 }
 
 TEST(BSplineSurface, OutsideTheDomainTheEndSpansGoOn) {
-  std::mt19937 random(kSeed);
+  std::mt19937 random = seeded();
   const auto kernel = test::random_bspline({3, 2, 4, 3, false, false, false}, random);
   const auto own = test::evaluator_of(kernel);
   const ParameterDomain d = own->domain();
@@ -150,7 +157,7 @@ TEST(BSplineSurface, RationalQuarterCylinderHasTheCurvatureOfTheCircle) {
 }
 
 TEST(BSplineSurface, ManyThreadsSeeTheSameNumbers) {
-  std::mt19937 random(kSeed);
+  std::mt19937 random = seeded();
   const auto own = test::evaluator_of(test::random_bspline({3, 3, 9, 7, true, false, false}, random));
   const ParameterDomain d = own->domain();
   const auto sum = [&] {

@@ -155,6 +155,8 @@ TEST(FileChecks, UnitNames) {
   EXPECT_EQ(normalized_unit("Metre"), "m");
   EXPECT_EQ(normalized_unit("inch"), "in");
   EXPECT_EQ(normalized_unit("furlong"), "furlong");
+  EXPECT_EQ(file_unit_in_mm(normalized_unit("Mil")), 0.0254);
+  EXPECT_EQ(file_unit_in_mm("furlong"), std::nullopt);
 }
 
 // Examples of ISO 10303-21:2016, 6.4.3.

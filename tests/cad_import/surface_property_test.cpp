@@ -16,6 +16,7 @@
 #include <gp_Ax3.hxx>
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -49,6 +50,7 @@ struct Sort {
 };
 
 Handle(Geom_Surface) random_patch(bool rational) {
+  std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   return test::random_bspline({4, 3, 3, 3, rational, false, false}, random);
 }
