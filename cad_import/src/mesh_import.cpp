@@ -7,6 +7,7 @@
 #include <assimp/ProgressHandler.hpp>
 #include <cmath>
 #include <exception>
+#include <fstream>
 #include <glm/ext/matrix_transform.hpp>
 #include <memory>
 #include <sstream>
@@ -86,8 +87,7 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
   const aiScene* scene = nullptr;
   std::string reason;
   try {
-    scene = importer.ReadFile(
-        file.string(), aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+    scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
     reason = importer.GetErrorString();
   } catch (const std::exception& error) {
     reason = error.what();
@@ -95,6 +95,20 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
   watch.rethrow();
   if (!scene) throw ImportError(file.string(), "", "cannot be read: " + one_line(reason));
   return *scene;
+}
+
+/// assimp reads on without a word where an OBJ file's material library is missing.
+std::vector<std::string> missing_libraries(const std::filesystem::path& file) {
+  constexpr std::string_view kKeyword = "mtllib ";
+  std::vector<std::string> warnings;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line) && line.rfind("f ", 0) != 0;) {
+    if (line.rfind(kKeyword, 0) != 0) continue;
+    const std::size_t end = line.find_last_not_of(" \t\r") + 1;
+    const std::string name = line.substr(kKeyword.size(), std::max(end, kKeyword.size()) - kKeyword.size());
+    if (!find_beside(file, name)) warnings.push_back("material library \"" + name + "\" was not found");
+  }
+  return warnings;
 }
 
 /// Surroundings reach from a thing in the hand to a landscape: wider limits than those of an optic.
@@ -128,6 +142,7 @@ TriangleMesh import_mesh(const std::filesystem::path& file, const ImportOptions&
     throw ImportError(file.string(), "", "is no mesh or CAD file that can be read",
                       "glTF, OBJ, STL, PLY, STEP, IGES or BREP");
   const double scale = unit_of(file, format, options) * options.scale;
+  if (format == FileFormat::ply) check_ply_header(file);
   ImportProgress progress(options, file.string());
   Assimp::Importer importer;
   progress.stage("reading", 0, kReadShare);
@@ -144,7 +159,8 @@ TriangleMesh import_mesh(const std::filesystem::path& file, const ImportOptions&
   mesh.format = name_of(format);
   mesh.materials = std::move(materials.materials);
   mesh.textures = std::move(materials.textures);
-  mesh.warnings = std::move(materials.warnings);
+  mesh.warnings = format == FileFormat::obj ? missing_libraries(file) : std::vector<std::string>{};
+  mesh.warnings.insert(mesh.warnings.end(), materials.warnings.begin(), materials.warnings.end());
   mesh.warnings.insert(mesh.warnings.end(), collected.warnings.begin(), collected.warnings.end());
   progress.step(0.5);
   weld(std::move(collected.soup), mesh);

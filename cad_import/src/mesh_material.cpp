@@ -49,20 +49,6 @@ std::string plain_path(std::string_view reference) {
   return path;
 }
 
-/// The file that `reference` means: as written, then decoded, then by its bare name beside the mesh.
-std::optional<std::filesystem::path> find_beside(const std::filesystem::path& mesh_file,
-                                                 const std::string& reference) {
-  const std::filesystem::path folder = mesh_file.parent_path(), plain = plain_path(reference);
-  for (const std::filesystem::path& candidate :
-       {folder / reference, folder / plain, folder / plain.filename()}) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(candidate, error)) continue;
-    const std::filesystem::path absolute = std::filesystem::absolute(candidate, error);
-    return error ? candidate : absolute.lexically_normal();
-  }
-  return std::nullopt;
-}
-
 TextureWrap wrap_of(int mode) {
   switch (mode) {
     case aiTextureMapMode_Clamp:
@@ -230,6 +216,19 @@ class MaterialReader {
 };
 
 }  // namespace
+
+std::optional<std::filesystem::path> find_beside(const std::filesystem::path& mesh_file,
+                                                 const std::string& reference) {
+  const std::filesystem::path folder = mesh_file.parent_path(), plain = plain_path(reference);
+  for (const std::filesystem::path& candidate :
+       {folder / reference, folder / plain, folder / plain.filename()}) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(candidate, error)) continue;
+    const std::filesystem::path absolute = std::filesystem::absolute(candidate, error);
+    return error ? candidate : absolute.lexically_normal();
+  }
+  return std::nullopt;
+}
 
 MaterialSet read_materials(const aiScene& scene, const std::filesystem::path& file, FileFormat format,
                            glm::vec3 color) {

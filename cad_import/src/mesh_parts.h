@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@ struct aiMaterial;
 struct aiScene;
 
 namespace catoptra::cad_import {
+
+/// Throws ImportError where a PLY file's header has no end or promises more than the file can hold.
+void check_ply_header(const std::filesystem::path& file);
+
+/// Corner numbers of the size - 2 triangles of a polygon with three corners or more, concave or not, in its
+/// own sense. A polygon that crosses itself becomes a fan where no ear is left.
+[[nodiscard]] std::vector<glm::uvec3> cut_polygon(std::span<const glm::dvec3> polygon);
 
 /// One corner of one triangle. `normal` is zero where the file gives none.
 struct MeshCorner {
@@ -59,7 +67,12 @@ struct MaterialSet {
 [[nodiscard]] MaterialSet read_materials(const aiScene& scene, const std::filesystem::path& file,
                                          FileFormat format, glm::vec3 color);
 
-/// The scene's triangles, every instance placed, in mm. Points and lines are counted in `mesh_warnings`.
+/// The file that `reference` in `mesh_file` means: as written, then with "%20" and backslashes decoded, then
+/// by its bare name beside the mesh. Nullopt where there is none.
+[[nodiscard]] std::optional<std::filesystem::path> find_beside(const std::filesystem::path& mesh_file,
+                                                               const std::string& reference);
+
+/// The scene's triangles, every instance placed, in mm. Points and lines are counted in the warnings.
 struct SceneTriangles {
   TriangleSoup soup;
   std::vector<std::string> warnings;

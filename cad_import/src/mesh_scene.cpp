@@ -72,8 +72,6 @@ class SceneFlattener {
   void add_mesh(const aiMesh& mesh, const glm::dmat4& placement) {
     totals_.vertex_colors = totals_.vertex_colors || mesh.HasVertexColors(0);
     if (!mesh.mVertices) return;
-    if (soup_.corners.size() + 3 * static_cast<std::size_t>(mesh.mNumFaces) > kMostCorners)
-      throw ImportError(file_, "", "holds more than 100 million triangles", "split the file");
     const glm::dmat3 linear(placement);
     const bool mirrored = glm::determinant(linear) < 0;
     const glm::dmat3 normal_matrix = glm::inverseTranspose(linear);
@@ -95,20 +93,27 @@ class SceneFlattener {
     };
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (!is_triangle(face, mesh.mNumVertices)) continue;
-      soup_.corners.push_back(corner(face.mIndices[0]));
-      soup_.corners.push_back(corner(face.mIndices[mirrored ? 2 : 1]));
-      soup_.corners.push_back(corner(face.mIndices[mirrored ? 1 : 2]));
-      soup_.material.push_back(material);
+      if (!is_polygon(face, mesh.mNumVertices)) continue;
+      std::vector<glm::dvec3> outline(face.mNumIndices);
+      for (unsigned k = 0; k < face.mNumIndices; ++k)
+        outline[k] = vector_of(mesh.mVertices[face.mIndices[k]]);
+      for (const glm::uvec3& t : cut_polygon(outline)) {
+        soup_.corners.push_back(corner(face.mIndices[t.x]));
+        soup_.corners.push_back(corner(face.mIndices[mirrored ? t.z : t.y]));
+        soup_.corners.push_back(corner(face.mIndices[mirrored ? t.y : t.z]));
+        soup_.material.push_back(material);
+      }
+      if (soup_.corners.size() > kMostCorners)
+        throw ImportError(file_, "", "holds more than 100 million triangles", "split the file");
     }
   }
 
-  bool is_triangle(const aiFace& face, unsigned vertices) {
+  bool is_polygon(const aiFace& face, unsigned vertices) {
     totals_.points += face.mNumIndices == 1;
     totals_.lines += face.mNumIndices == 2;
     if (face.mNumIndices == 1 || face.mNumIndices == 2) return false;
-    bool good = face.mNumIndices == 3;
-    for (unsigned k = 0; good && k < 3; ++k) good = face.mIndices[k] < vertices;
+    bool good = face.mNumIndices >= 3;
+    for (unsigned k = 0; good && k < face.mNumIndices; ++k) good = face.mIndices[k] < vertices;
     totals_.bad_faces += !good;
     return good;
   }

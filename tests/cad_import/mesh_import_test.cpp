@@ -75,6 +75,12 @@ TEST(MeshImport, MissingTextureIsAWarning) {
   EXPECT_EQ(joined(mesh.warnings), "material \"sign\": texture \"nowhere.png\" was not found\n");
 }
 
+TEST(MeshImport, MissingMaterialLibraryIsAWarning) {
+  const ScratchFolder folder;
+  const TriangleMesh mesh = import_mesh(folder.write("quad.obj", kQuadObj));
+  EXPECT_EQ(joined(mesh.warnings), "material library \"quad.mtl\" was not found\n");
+}
+
 TEST(MeshImport, ObjDissolveIsCutAtTheHalf) {
   const ScratchFolder folder;
   folder.write("quad.mtl", "newmtl sign\nKd 1 1 1\nd 0.3\n");
@@ -149,6 +155,25 @@ TEST(MeshImport, EmbeddedTextureWithSamplerAndTransform) {
   expect_at({0, 0, 0}, 0, 0);
   expect_at({1000, 0, 0}, 1, 0);
   expect_at({0, 1000, 0}, 0, 1);
+}
+
+// The example in the extension's text: the lower left quarter of the image, turned clockwise by 90 degrees.
+TEST(MeshImport, TextureTransformExampleOfTheSpecification) {
+  const ScratchFolder folder;
+  folder.write("image.png", "not decoded here");
+  const std::string material = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions":
+      {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.57079632679, "scale": [0.5, 0.5]}}}},)";
+  const std::string rest = R"("extensionsUsed": ["KHR_texture_transform"], "textures": [{"source": 0}],
+      "images": [{"uri": "image.png"}],)";
+  const TriangleMesh mesh = import_mesh(folder.write("a.gltf", gltf_triangle("", material, rest)));
+  const auto expect_at = [&](glm::vec3 place, glm::vec2 expected) {
+    const glm::vec2 st = mesh.texture_coordinates[vertex_at(mesh, place)];
+    EXPECT_NEAR(st.x, expected.x, 1e-6);
+    EXPECT_NEAR(st.y, expected.y, 1e-6);
+  };
+  expect_at({0, 0, 0}, {0, 1});
+  expect_at({1000, 0, 0}, {0, 0.5});
+  expect_at({0, 1000, 0}, {0.5, 1});
 }
 
 TEST(MeshImport, CubeWithoutNormalsKeepsItsEdgesSharp) {
