@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "render/src/shading_vector_clones.h"
+
 namespace catoptra::render {
 namespace {
 
@@ -46,6 +48,24 @@ void copy_hits(const optics::RayPacket16& from, ShadeLanes& to) {
   std::copy_n(from.v, kLanes, to.v);
   std::copy_n(from.object, kLanes, to.object);
   std::copy_n(from.triangle, kLanes, to.triangle);
+}
+
+/// Eye rays in double precision, unit. `stretch`: how much longer they are along the camera's axis; on entry
+/// `mirror.start` is a depth, on return a distance.
+CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const double (&column)[kLanes],
+                                            const double (&row)[kLanes], double (&stretch)[kLanes],
+                                            MirrorLanes& mirror) {
+  const glm::dvec3 corner = camera.corner, dx = camera.dx, dy = camera.dy;
+  for (int i = 0; i < kLanes; ++i) {
+    const double x = corner.x + column[i] * dx.x + row[i] * dy.x,
+                 y = corner.y + column[i] * dx.y + row[i] * dy.y;
+    const double z = corner.z + column[i] * dx.z + row[i] * dy.z, length = std::sqrt(x * x + y * y + z * z);
+    stretch[i] = length;
+    mirror.direction_x[i] = x / length;
+    mirror.direction_y[i] = y / length;
+    mirror.direction_z[i] = z / length;
+    mirror.start[i] *= length;
+  }
 }
 
 }  // namespace
@@ -122,18 +142,8 @@ bool PacketTracer::find_mirrors(Packet& p) const {
 /// Hits and reflects exactly where a mirror shows, and queries the reflected rays.
 void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
   if (!find_mirrors(p)) return;
-  const glm::dvec3 corner = camera.corner, dx = camera.dx, dy = camera.dy;
-  for (int i = 0; i < kLanes; ++i) {
-    const double x = corner.x + p.column[i] * dx.x + p.row[i] * dy.x,
-                 y = corner.y + p.column[i] * dx.y + p.row[i] * dy.y;
-    const double z = corner.z + p.column[i] * dx.z + p.row[i] * dy.z,
-                 length = std::sqrt(x * x + y * y + z * z);
-    p.stretch[i] = length;
-    p.mirror.direction_x[i] = x / length;
-    p.mirror.direction_y[i] = y / length;
-    p.mirror.direction_z[i] = z / length;
-    p.mirror.start[i] = p.optic[i] >= 0 ? p.first.t_max[i] * length : 1.0;
-  }
+  for (int i = 0; i < kLanes; ++i) p.mirror.start[i] = p.optic[i] >= 0 ? p.first.t_max[i] : 1.0;
+  aim_mirror_rays(camera, p.column, p.row, p.stretch, p.mirror);
   for (std::size_t optic = 0; optic < mirrors_.size(); ++optic) {
     bool any = false;
     for (int i = 0; i < kLanes; ++i) any |= p.mirror.active[i] = p.optic[i] == int(optic);

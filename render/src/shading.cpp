@@ -164,7 +164,7 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
     g.material[i] = nullptr;
     g.texture.texture[i] = nullptr;
     g.texture.s[i] = g.texture.t[i] = g.texels[i] = 0;
-    g.texture.wrap[i] = 0;
+    g.texture.wrap[i] = cad_import::TextureWrap::repeat;
     g.nx[i] = g.ny[i] = 0;
     g.nz[i] = 1;
     if (!lanes.active[i] || lanes.object[i] == optics::kNoHit) continue;
@@ -185,7 +185,7 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
     if (!material.texture) continue;
     const glm::vec2 e1 = tri.st[1] - tri.st[0], e2 = tri.st[2] - tri.st[0];
     g.texture.texture[i] = material.texture;
-    g.texture.wrap[i] = std::int32_t(material.wrap);
+    g.texture.wrap[i] = material.wrap;
     g.texture.s[i] = tri.st[0].x + lanes.u[i] * e1.x + lanes.v[i] * e2.x;
     g.texture.t[i] = tri.st[0].y + lanes.u[i] * e1.y + lanes.v[i] * e2.y;
     g.texels[i] = std::abs(e1.x * e2.y - e1.y * e2.x) * material.texture->texel_count();

@@ -14,7 +14,6 @@ namespace {
 using cad_import::TextureWrap;
 
 constexpr int kLanes = TextureLanes::kLanes;
-constexpr auto kRepeat = std::int32_t(TextureWrap::repeat), kMirror = std::int32_t(TextureWrap::mirror);
 
 std::array<std::uint16_t, 256> make_linear_table() {
   std::array<std::uint16_t, 256> table{};
@@ -25,25 +24,29 @@ std::array<std::uint16_t, 256> make_linear_table() {
 
 /// Where each lane's eight texels are (four of each of two levels) and what they weigh.
 struct alignas(64) Footprints {
+  float s[kLanes], t[kLanes];                                          ///< finite coordinates
+  float repeat[kLanes], mirror[kLanes], clamp[kLanes];                 ///< 1 for the lane's wrap mode, else 0
   std::int32_t width[2][kLanes], height[2][kLanes], first[2][kLanes];  ///< of the two levels
-  float share[2][kLanes];                                              ///< of the two levels, over 65535
+  std::int32_t across[2][kLanes],
+      down[2][kLanes];     ///< how far a repeating texture is to the texel beyond its border
+  float share[2][kLanes];  ///< of the two levels, over 65535
   std::int32_t index[8][kLanes];
   float weight[8][kLanes];
 };
 
+// What follows is free of branches, so that the compiler can run it for all lanes at once.
+
 /// Largest whole number not above x, for |x| < 2^31.
 [[gnu::always_inline]] inline float whole(float x) {
   const auto truncated = float(std::int32_t(x));
-  return truncated - (truncated > x ? 1.0f : 0.0f);
+  return truncated - float(truncated > x);
 }
 
 /// Brings a coordinate into [0, 1] by the wrap mode.
-[[gnu::always_inline]] inline float fold(float coordinate, std::int32_t wrap) {
-  const float s = std::abs(coordinate) < 1e6f ? coordinate : 0.0f;
-  const float repeated = s - whole(s), double_period = s - 2 * whole(0.5f * s);
-  const float mirrored = double_period > 1 ? 2 - double_period : double_period;
-  const float low = s > 0 ? s : 0.0f, clamped = low < 1 ? low : 1.0f;
-  return wrap == kRepeat ? repeated : wrap == kMirror ? mirrored : clamped;
+[[gnu::always_inline]] inline float fold(float s, float repeat, float mirror, float clamp) {
+  const float repeated = s - whole(s), mirrored = 1 - std::abs(s - 2 * whole(0.5f * s) - 1);
+  const float clamped = std::min(std::max(s, 0.0f), 1.0f);
+  return repeat * repeated + mirror * mirrored + clamp * clamped;
 }
 
 /// The two texels on both sides of a coordinate in [0, 1] along an axis of `size` texels, and the weight of
@@ -53,19 +56,24 @@ struct Neighbours {
   float weight;
 };
 
-[[gnu::always_inline]] inline Neighbours neighbours(float folded, std::int32_t size, std::int32_t wrap) {
+[[gnu::always_inline]] inline Neighbours neighbours(float folded, std::int32_t size, std::int32_t jump) {
   const float x = folded * float(size) - 0.5f;
-  const std::int32_t i = std::int32_t(x + 1) - 1;  // rounds down, since x >= -0.5
-  const std::int32_t before = wrap == kRepeat ? size - 1 : 0, after = wrap == kRepeat ? 0 : size - 1;
-  return {i < 0 ? before : i, i + 1 >= size ? after : i + 1, x - float(i)};
+  const std::int32_t i = std::int32_t(x + 1) - 1, last = size - 1;  // rounds down, since x >= -0.5
+  const std::int32_t below = i >> 31,
+                     above = (last - i - 1) >> 31;  // all bits set where the neighbour is beyond the border
+  return {std::max(i, 0) + (below & jump), std::min(i + 1, last) - (above & jump), x - float(i)};
 }
 
-CATOPTRA_VECTOR_CLONES void find_texels(const TextureLanes& lanes, Footprints& f) {
+CATOPTRA_VECTOR_CLONES void find_texels(Footprints& f) {
+  for (int i = 0; i < kLanes; ++i) {
+    f.s[i] = fold(f.s[i], f.repeat[i], f.mirror[i], f.clamp[i]);
+    f.t[i] = fold(f.t[i], f.repeat[i], f.mirror[i], f.clamp[i]);
+  }
   for (int level = 0; level < 2; ++level)
     for (int i = 0; i < kLanes; ++i) {
-      const std::int32_t wrap = lanes.wrap[i], width = f.width[level][i], first = f.first[level][i];
-      const Neighbours x = neighbours(fold(lanes.s[i], wrap), width, wrap);
-      const Neighbours y = neighbours(fold(lanes.t[i], wrap), f.height[level][i], wrap);
+      const std::int32_t width = f.width[level][i], first = f.first[level][i];
+      const Neighbours x = neighbours(f.s[i], width, f.across[level][i]);
+      const Neighbours y = neighbours(f.t[i], f.height[level][i], f.down[level][i]);
       const float top = f.share[level][i] * (1 - y.weight), bottom = f.share[level][i] * y.weight;
       f.index[4 * level][i] = first + y.a * width + x.a;
       f.index[4 * level + 1][i] = first + y.a * width + x.b;
@@ -86,6 +94,12 @@ template <typename Texel>
   std::memcpy(&raw, &texel, sizeof raw);
   // By way of signed integers, which every vector unit converts to float in one step.
   return __builtin_convertvector(__builtin_convertvector(raw, Int4), Float4);
+}
+
+/// Coordinates so far out that their fraction means nothing are taken for 0, as are those that are no
+/// numbers.
+float finite(float coordinate) {
+  return std::abs(coordinate) < 1e6f ? coordinate : 0.0f;
 }
 
 const LinearTexture& white() {
@@ -117,17 +131,25 @@ void sample_textures(TextureLanes& lanes) {
     const float lod = wanted > 0 ? std::min(wanted, coarsest) : 0.0f;  // 0 too where it is not a number
     const auto finer = std::size_t(lod), coarser = std::min(finer + 1, texture.levels_.size() - 1);
     const float blend = lod - float(finer);
+    const bool repeat = lanes.wrap[i] == TextureWrap::repeat;
+    f.repeat[i] = float(repeat);
+    f.mirror[i] = float(lanes.wrap[i] == TextureWrap::mirror);
+    f.clamp[i] = float(lanes.wrap[i] == TextureWrap::clamp);
+    f.s[i] = finite(lanes.s[i]);
+    f.t[i] = finite(lanes.t[i]);
     for (int k = 0; k < 2; ++k) {
       const LinearTexture::Level& level = texture.levels_[k == 0 ? finer : coarser];
       f.width[k][i] = level.width;
       f.height[k][i] = level.height;
       f.first[k][i] = level.first;
+      f.across[k][i] = repeat ? level.width - 1 : 0;
+      f.down[k][i] = repeat ? level.height - 1 : 0;
     }
     f.share[0][i] = (1 - blend) * (1.0f / 65535.0f);
     f.share[1][i] = blend * (1.0f / 65535.0f);
     texels[i] = texture.texels_.data();
   }
-  find_texels(lanes, f);
+  find_texels(f);
   for (int i = 0; i < kLanes; ++i) {
     Float4 color = f.weight[0][i] * load(texels[i][f.index[0][i]]);
     for (int k = 1; k < 8; ++k) color += f.weight[k][i] * load(texels[i][f.index[k][i]]);

@@ -46,8 +46,8 @@ struct alignas(64) TextureLanes {
   // In. Coordinates that are not finite are taken for 0.
   const LinearTexture* texture[kLanes];  ///< null: none, the result is white
   float s[kLanes], t[kLanes];
-  float lod[kLanes];          ///< level of detail, 0: the finest; clamped to the levels there are
-  std::int32_t wrap[kLanes];  ///< of cad_import::TextureWrap
+  float lod[kLanes];  ///< level of detail, 0: the finest; clamped to the levels there are
+  cad_import::TextureWrap wrap[kLanes];
   // Out: linear RGBA.
   Float4 color[kLanes];
 };

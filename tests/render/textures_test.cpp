@@ -131,7 +131,7 @@ class LinearTexture : public testing::Test {
       lanes.s[i] = s;
       lanes.t[i] = 0.5f;
       lanes.lod[i] = lod;
-      lanes.wrap[i] = std::int32_t(wrap);
+      lanes.wrap[i] = wrap;
     }
     render::sample_textures(lanes);
     EXPECT_NEAR(lanes.color[0][0], 1, 1e-6) << "no texture: white";
