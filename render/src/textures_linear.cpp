@@ -86,14 +86,21 @@ CATOPTRA_VECTOR_CLONES void find_texels(Footprints& f) {
     }
 }
 
-template <typename Texel>
-[[gnu::always_inline]] inline Float4 load(const Texel& texel) {
+/// Weighted sums of each lane's eight texels. `texels`: four channels each.
+CATOPTRA_VECTOR_CLONES void blend_texels(const Footprints& f, const std::uint16_t* const (&texels)[kLanes],
+                                         Float4 (&color)[kLanes]) {
   using Short4 = std::uint16_t __attribute__((vector_size(8)));
   using Int4 = std::int32_t __attribute__((vector_size(16)));
-  Short4 raw;
-  std::memcpy(&raw, &texel, sizeof raw);
-  // By way of signed integers, which every vector unit converts to float in one step.
-  return __builtin_convertvector(__builtin_convertvector(raw, Int4), Float4);
+  for (int i = 0; i < kLanes; ++i) {
+    Float4 sum{};
+    for (int k = 0; k < 8; ++k) {
+      Short4 raw;
+      std::memcpy(&raw, texels[i] + 4 * std::ptrdiff_t(f.index[k][i]), sizeof raw);
+      // By way of signed integers, which every vector unit converts to float in one step.
+      sum += f.weight[k][i] * __builtin_convertvector(__builtin_convertvector(raw, Int4), Float4);
+    }
+    color[i] = sum;
+  }
 }
 
 /// Coordinates so far out that their fraction means nothing are taken for 0, as are those that are no
@@ -124,7 +131,7 @@ LinearTexture::LinearTexture(const MipTexture& texture) {
 void sample_textures(TextureLanes& lanes) {
   static const LinearTexture& none = white();
   Footprints f;
-  const LinearTexture::Texel* texels[kLanes];
+  const std::uint16_t* texels[kLanes];
   for (int i = 0; i < kLanes; ++i) {
     const LinearTexture& texture = lanes.texture[i] ? *lanes.texture[i] : none;
     const float coarsest = float(texture.levels_.size() - 1), wanted = lanes.lod[i];
@@ -147,14 +154,10 @@ void sample_textures(TextureLanes& lanes) {
     }
     f.share[0][i] = (1 - blend) * (1.0f / 65535.0f);
     f.share[1][i] = blend * (1.0f / 65535.0f);
-    texels[i] = texture.texels_.data();
+    texels[i] = texture.texels_.front().rgba;
   }
   find_texels(f);
-  for (int i = 0; i < kLanes; ++i) {
-    Float4 color = f.weight[0][i] * load(texels[i][f.index[0][i]]);
-    for (int k = 1; k < 8; ++k) color += f.weight[k][i] * load(texels[i][f.index[k][i]]);
-    lanes.color[i] = color;
-  }
+  blend_texels(f, texels, lanes.color);
 }
 
 }  // namespace catoptra::render
