@@ -52,6 +52,23 @@ struct PatchHeight {
           p1 + y * (2 * p2 + y * (3 * p3 + y * (4 * p4 + y * (5 * c[20]))))};
 }
 
+/// The height alone.
+[[gnu::always_inline]] inline double patch_value(const double* c, double x, double y) {
+  const double p4 = c[18] + x * c[19], p3 = c[15] + x * (c[16] + x * c[17]);
+  const double p2 = c[11] + x * (c[12] + x * (c[13] + x * c[14]));
+  const double p1 = c[6] + x * (c[7] + x * (c[8] + x * (c[9] + x * c[10])));
+  const double p0 = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  return p0 + y * (p1 + y * (p2 + y * (p3 + y * (p4 + y * c[20]))));
+}
+
+/// Height and slopes without the terms above degree 3, for a first step.
+[[gnu::always_inline]] inline PatchHeight patch_height_cubic(const double* c, double x, double y) {
+  const double p2 = c[11] + x * c[12], p1 = c[6] + x * (c[7] + x * c[8]), p1x = c[7] + x * (2 * c[8]);
+  const double p0 = c[0] + x * (c[1] + x * (c[2] + x * c[3])), p0x = c[1] + x * (2 * c[2] + x * (3 * c[3]));
+  return {p0 + y * (p1 + y * (p2 + y * c[15])), p0x + y * (p1x + y * c[12]),
+          p1 + y * (2 * p2 + y * (3 * c[15]))};
+}
+
 /// A rectangle of (u, v).
 struct UvBox {
   glm::dvec2 low{0}, high{0};
