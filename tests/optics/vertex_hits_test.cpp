@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "cad_import/error.h"
-#include "tests/support/analytic_optic.h"
+#include "tests/support/analytic_lens.h"
 
 namespace catoptra::optics {
 namespace {
@@ -65,6 +65,69 @@ TEST(VertexHits, RefusesALens) {
   Optic lens = test::conic_mirror(100, 0, 50, 50, 3, 3);
   lens.kind = OpticKind::lens;
   EXPECT_THROW((void)trace_vertices(lens, {0, 0, 500}, scene), Error);
+}
+
+// What moves the eye's ray at a vertex moves the outgoing ray as the differential says: against a central
+// difference, whose own error at 1e-3 mm steps is below 1e-8 of the change.
+TEST(VertexHits, DifferentialsOfALensAreThoseOfItsTracedPaths) {
+  const Optic lens = test::spherical_lens(62.5, 122, 5, 50, 7);
+  const LensTracer tracer(lens);
+  const glm::dvec3 eye(12, -7, -90);
+  const auto hits = refract_vertices(lens, tracer, LensSide::back, kLineD_nm, eye);
+  int passed = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].faces_eye) continue;
+    ++passed;
+    const glm::dvec3 vertex = lens.back.mesh.vertices[i].position_mm;
+    constexpr double kStep_mm = 1e-3;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::dvec3 step{0};
+      step[axis] = kStep_mm;
+      const auto path = [&](const glm::dvec3& point) {
+        return tracer.trace({eye, glm::normalize(point - eye)}, LensSide::back,
+                            lens_indices(lens, kLineD_nm));
+      };
+      const LensPath after = path(vertex + step), before = path(vertex - step);
+      if (after.end != LensPathEnd::passed || before.end != LensPathEnd::passed) continue;
+      const glm::dvec3 turned = (after.outside - before.outside) / (2 * kStep_mm);
+      const glm::dvec3 moved = (after.exit.position_mm - before.exit.position_mm) / (2 * kStep_mm);
+      EXPECT_LT(glm::distance(hits[i].differential.direction[axis], turned), 1e-8) << i;  // 1/mm
+      EXPECT_LT(glm::distance(hits[i].differential.point[axis], moved), 1e-6) << i;
+    }
+  }
+  EXPECT_GT(passed, 20);
+}
+
+TEST(VertexHits, RaysOfALensAreKeptWhileTheSceneChanges) {
+  const Optic lens = test::spherical_lens(62.5, 122, 5, 50, 9);
+  const LensTracer tracer(lens);
+  const glm::dvec3 eye(0, 0, -70);
+  RayScene empty, scene;
+  empty.commit();
+  scene.add_surroundings(wall_at(1000));
+  scene.commit();
+  const auto rays = refract_vertices(lens, tracer, LensSide::back, kLineD_nm, eye);
+  const auto once = find_scene_hits(rays, scene);
+  const auto anew = trace_vertices(lens, tracer, LensSide::back, kLineD_nm, eye, scene);
+  ASSERT_EQ(once.size(), lens.back.mesh.vertices.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_EQ(once[i].hit_point_mm, anew[i].hit_point_mm);
+    EXPECT_EQ(once[i].faces_eye, once[i].end == LensPathEnd::passed);
+    if (!once[i].faces_eye) continue;
+    ASSERT_TRUE(once[i].scene_hit);
+    EXPECT_NEAR(once[i].hit_point_mm.z, 1000, 1e-9);
+    EXPECT_GT(once[i].transmittance, 0.9);
+  }
+  EXPECT_FALSE(find_scene_hits(once, empty)[40].scene_hit);
+}
+
+TEST(VertexHits, ALensSeenFromTheOtherSideShowsNothing) {
+  const Optic lens = test::spherical_lens(62.5, 122, 5, 50, 5);
+  const LensTracer tracer(lens);
+  for (const VertexHit& hit : refract_vertices(lens, tracer, LensSide::front, kLineD_nm, {0, 0, -400})) {
+    EXPECT_FALSE(hit.faces_eye);
+    EXPECT_EQ(hit.end, LensPathEnd::missed);
+  }
 }
 
 }  // namespace
