@@ -217,6 +217,10 @@ std::vector<EdgeRatio> edge_ratios(const MapProblem& problem, std::span<const Ma
 // themselves are good for.
 void fit_logarithms(std::span<const EdgeRatio> edges, std::vector<double>& x) {
   constexpr int kMaxIterations = 200;
+  // Ratios smaller than this are rounding: a change of q by 1e-8 moves what an edge shows by less than 1e-8
+  // of its length. To go after them would not end: the system has a null space (all x moved alike), along
+  // which noise grows from step to step.
+  constexpr double kSmallestRatio = 1e-8;
   const std::size_t n = x.size();
   std::vector<double> diagonal(n, 0.0), residual(n, 0.0), z(n), direction(n, 0.0), product(n);
   double scale = 0;
@@ -226,7 +230,7 @@ void fit_logarithms(std::span<const EdgeRatio> edges, std::vector<double>& x) {
     diagonal[b] += weight;
     residual[a] -= pull;
     residual[b] += pull;
-    scale += weight * log_ratio * log_ratio;
+    scale += weight * std::max(log_ratio * log_ratio, kSmallestRatio * kSmallestRatio);
   }
   double last = 0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {

@@ -132,6 +132,29 @@ TEST(MapCoordinates, HiddenSideGetsTheMiddleAndWildShapesStayPositive) {
   }
 }
 
+// Regression: a plane seen head-on asks for no change of q at all, and the fit chased the rounding of a
+// turned mirror until it overflowed.
+TEST(MapCoordinates, TurnedPlaneSeenHeadOnHasEqualDenominators) {
+  for (int step = 1; step < 40; ++step)
+    for (const int side : {2, 7}) {
+      Optic mirror = test::conic_mirror(0, 0, 170, 110, side, side);
+      const double angle = 0.077 * step;
+      const auto turn = [&](const glm::dvec3& v) {
+        return glm::dvec3(v.x, std::cos(angle) * v.y - std::sin(angle) * v.z,
+                          std::sin(angle) * v.y + std::cos(angle) * v.z);
+      };
+      for (auto& vertex : mirror.mesh.vertices) {
+        vertex.position_mm = turn(vertex.position_mm);
+        vertex.normal = turn(vertex.normal);
+        vertex.direction1 = turn(vertex.direction1);
+      }
+      const auto hits = hits_on({}, mirror, turn({0, 0, 800}));
+      const auto coordinates = map_coordinates(mirror, hits, make_virtual_view(mirror, hits, kBounds));
+      // Head-on all denominators are equal, up to the ratios of 1e-8 that the fit leaves alone.
+      for (const glm::dvec3& c : coordinates) ASSERT_NEAR(c.z, 1, 1e-6) << "turned by " << angle << " rad";
+    }
+}
+
 TEST(MapCoordinates, RefusesHitsOfAnotherOptic) {
   const Optic mirror = test::conic_mirror(1200, 0, 170, 110, 3, 3);
   EXPECT_THROW((void)map_coordinates(mirror, {}, VirtualView{}), Error);
