@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -92,6 +93,18 @@ void set_ray(EmbreeRay& out, const Ray& ray, std::uint32_t mask) {
   out.mask = mask;
   out.id = 0;
   out.flags = 0;
+}
+
+// A ray that meets nothing.
+const Ray kNoRay{{0, 0, 0}, {0, 0, 1}, 0, -1};
+
+// Whether Embree can follow the ray: it takes no care of what is not finite, or beyond 1e18 mm.
+bool can_be_traced(const Ray& ray) {
+  constexpr double kLargest = 1e18;
+  const auto fits = [](double x) { return std::abs(x) < kLargest; };  // not where x is no number
+  const glm::dvec3 &o = ray.origin_mm, &d = ray.direction;
+  return fits(o.x) && fits(o.y) && fits(o.z) && fits(d.x) && fits(d.y) && fits(d.z) && fits(ray.t_min_mm) &&
+         !std::isnan(ray.t_max_mm);
 }
 
 void set_lane(RayPacket16& packet, std::size_t i, const Ray& ray) {
@@ -229,8 +242,8 @@ struct RayScene::Impl {
   void query_block(std::span<const Ray> rays, std::span<Hit> hits, std::uint32_t mask) const {
     RayPacket16 packet;
     for (std::size_t i = 0; i < kLanes; ++i) {
-      set_lane(packet, i, rays[std::min(i, rays.size() - 1)]);
-      if (i >= rays.size()) packet.t_max[i] = -1;
+      const bool active = i < rays.size() && can_be_traced(rays[i]);
+      set_lane(packet, i, active ? rays[i] : kNoRay);
     }
     query(packet, mask, true);
     for (std::size_t i = 0; i < rays.size(); ++i)
@@ -316,6 +329,7 @@ void RayScene::commit() {
 }
 
 Hit RayScene::intersect(const Ray& ray, std::uint32_t mask) const {
+  if (!can_be_traced(ray)) return {};
   RTCRayHit query;
   set_ray(query.ray, ray, mask);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -354,6 +368,7 @@ void RayScene::intersect16(RayPacket16& packet, std::uint32_t mask, bool coheren
 }
 
 bool RayScene::occluded(const Ray& ray, std::uint32_t mask) const {
+  if (!can_be_traced(ray)) return false;
   RTCRay query;
   set_ray(query, ray, mask);
   RTCIntersectContext context = query_context(false);

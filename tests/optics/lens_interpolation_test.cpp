@@ -137,7 +137,9 @@ TEST(LensInterpolation, PlaneParallelPlate) {
       const Quantiles error = interpolation_error(plate, 32, interpolation);
       std::printf("plate, eye %.0f mm, interpolation %d: %.4f / %.4f\n", z, static_cast<int>(interpolation),
                   error.median, error.p99);
-      if (interpolation != MapInterpolation::affine) EXPECT_LT(error.p99, 0.001);
+      if (interpolation != MapInterpolation::affine) {
+        EXPECT_LT(error.p99, 0.001);
+      }
     }
   }
 }

@@ -279,5 +279,23 @@ TEST(RayScene, RefusesIndicesBeyondTheVertices) {
   }
 }
 
+// The tracer below has no care for such rays; a lens with a damaged surface makes them.
+TEST(RayScene, RaysThatAreNoNumbersMeetNothing) {
+  RayScene scene;
+  scene.add_optic(test::conic_mirror(0, 0, 100, 100, 2, 2).mesh);
+  scene.commit();
+  const double nan = std::nan("");
+  const Ray good{{1, 2, 50}, {0, 0, -1}};
+  const std::vector<Ray> rays{{{nan, 0, 0}, {0, 0, 1}},      good,
+                              {{0, 0, 50}, {0, nan, -1}},    {{0, 0, kInfinity}, {0, 0, -1}},
+                              {{0, 0, 50}, {0, 0, -1}, nan}, {{0, 0, 50}, {0, 0, -1}, 0, nan}};
+  const auto hits = scene.intersect(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(bool(hits[i]), i == 1) << i;
+    EXPECT_EQ(bool(scene.intersect(rays[i])), i == 1) << i;
+    EXPECT_EQ(scene.occluded(rays[i]), i == 1) << i;
+  }
+}
+
 }  // namespace
 }  // namespace catoptra::optics
