@@ -116,7 +116,8 @@ std::vector<Row> step_sphere(const std::filesystem::path& folder) {
       {"Glass R 1200 from STEP (B-spline): distance of 4,131 exact hits from the sphere", "0 mm",
        below(farthest, "mm"), below(farthest, "mm")},
       {"... angle between its normals and the sphere's", "0 rad", below(turned, "rad"), below(turned, "rad")},
-      {"... principal radii", "1200 mm", number(kRadius_mm, 6, "mm"), below(off, "mm")}};
+      {"... principal radii", "1200 mm", number(least, 5) + " to " + number(greatest, 5, "mm"),
+       below(off, "mm")}};
 }
 
 }  // namespace

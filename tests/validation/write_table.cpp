@@ -1,4 +1,5 @@
 // write_table EXAMPLES OUTPUT.md: measures, and writes the validation table of the README.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -10,15 +11,19 @@
 namespace catoptra::validation {
 
 std::string number(double value, int digits, const std::string& unit) {
+  // Digits after the point that leave `digits` significant ones.
+  const int whole = value == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
   char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  std::snprintf(text, sizeof text, "%.*f", std::max(0, digits - whole), value);
   return text + (unit.empty() ? "" : (unit == "'" ? "" : " ") + unit);
 }
 
 std::string below(double value, const std::string& unit) {
   // Never finer than 1e-9: what is left below is rounding that may differ between machines.
   const int exponent = value < 1e-9 ? -9 : static_cast<int>(std::ceil(std::log10(value)));
-  return "< 1e" + std::to_string(exponent) + (unit.empty() ? "" : " " + unit);
+  const std::string power =
+      exponent >= -2 ? number(std::pow(10, exponent), 1) : "1e" + std::to_string(exponent);
+  return "< " + power + (unit.empty() || unit == "'" ? "" : " ") + unit;
 }
 
 }  // namespace catoptra::validation
