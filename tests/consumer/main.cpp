@@ -1,4 +1,5 @@
-// Imports a mirror R 1200 mm from STEP, traces one ray to its exact surface and compares with the sphere's closed form.
+// Imports a mirror R 1200 mm from STEP, traces one ray to its exact surface and compares with the sphere's
+// closed form.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -35,9 +36,11 @@ int main(int argc, char** argv) try {
   const glm::dvec3 centre(0, 0, -kRadius_mm);
   const glm::dvec3 point(50, 20, std::sqrt(kRadius_mm * kRadius_mm - 50 * 50 - 20 * 20) - kRadius_mm);
   const glm::dvec3 expected = optics::reflect(ray.direction, (point - centre) / kRadius_mm);
-  const double distance_mm = glm::distance(hit->position_mm, point), turn_rad = glm::distance(direction, expected);
-  std::printf("%zu faces, mode %s, hit %.3g mm and direction %.3g rad from the sphere's\n", model.faces.size(),
-              std::string(render::mode_name(render::Mode::pvrr)).c_str(), distance_mm, turn_rad);
+  const double distance_mm = glm::distance(hit->position_mm, point),
+               turn_rad = glm::distance(direction, expected);
+  std::printf("%zu faces, mode %s, hit %.3g mm and direction %.3g rad from the sphere's\n",
+              model.faces.size(), std::string(render::mode_name(render::Mode::pvrr)).c_str(), distance_mm,
+              turn_rad);
   // mirror make promises 1e-6 mm; its slope is then right to about 1e-6 mm over a patch of some millimetres.
   return distance_mm < 2e-6 && turn_rad < 1e-6 ? 0 : 1;
 } catch (const std::exception& error) {
