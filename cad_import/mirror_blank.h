@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cad_import/error.h"
+#include "cad_import/outline.h"
 
 namespace catoptra::cad_import {
 
@@ -51,9 +52,5 @@ struct MirrorBlank {
 /// folder, read again, checked, and only then renamed. Throws Error, naming the value at fault, for a blank
 /// that cannot be made and where the file cannot be written.
 void write_mirror_blank(const MirrorBlank& blank, const std::filesystem::path& file);
-
-/// Reads an outline for MirrorBlank::polygon: one corner "x y" (or "x, y") in mm per line; "#" begins a
-/// comment, a last corner that repeats the first is dropped. Throws ImportError with the line's number.
-[[nodiscard]] std::vector<glm::dvec2> read_outline(const std::filesystem::path& file);
 
 }  // namespace catoptra::cad_import

@@ -71,7 +71,7 @@ void check_aspheric(const MirrorBlank& blank, const OutlineBox& box) {
 }
 
 void check_outline(const MirrorBlank& blank) {
-  if (blank.outline == MirrorOutline::polygon) return check_polygon(blank.polygon);
+  if (blank.outline == MirrorOutline::polygon) return check_polygon(blank.polygon, "mirror");
   if (!(std::isfinite(blank.width_mm) && blank.width_mm > 0)) refuse("width", "must be more than 0 mm");
   if (!(std::isfinite(blank.height_mm) && blank.height_mm > 0)) refuse("height", "must be more than 0 mm");
   if (blank.outline != MirrorOutline::rounded) return;
@@ -86,12 +86,7 @@ void check_outline(const MirrorBlank& blank) {
 OutlineBox outline_box(const MirrorBlank& blank) {
   if (blank.outline != MirrorOutline::polygon)
     return {{-blank.width_mm / 2, -blank.height_mm / 2}, {blank.width_mm / 2, blank.height_mm / 2}};
-  OutlineBox box{blank.polygon.front(), blank.polygon.front()};
-  for (const glm::dvec2& p : blank.polygon) {
-    box.min = glm::min(box.min, p);
-    box.max = glm::max(box.max, p);
-  }
-  return box;
+  return box_of(blank.polygon);
 }
 
 double aspheric_edge_mm(const AsphericPart& part, const OutlineBox& box) {

@@ -1,4 +1,4 @@
-// The B-spline surface of a mirror glass: interpolation of the ideal height field.
+// B-spline surfaces of blanks: interpolation of a height field.
 #include <BSplCLib.hxx>
 #include <BSplSLib.hxx>
 #include <TColStd_Array1OfInteger.hxx>
@@ -9,14 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "cad_import/src/mirror_blank_parts.h"
+#include "cad_import/src/blank_parts.h"
 
 namespace catoptra::cad_import {
 namespace {
 
-constexpr int kDegree = 3;
-/// Half of what write_mirror_blank promises: the check points may miss the worst place.
-constexpr double kTolerance_mm = 5e-7;
 /// 256 spans a side are 67,000 poles, a file of about 5 MB.
 constexpr int kMostSpans = 256;
 
@@ -40,11 +37,11 @@ std::vector<double> knots_with(double from, double to, int spans, std::optional<
   return knots;
 }
 
-TColStd_Array1OfReal flat_knots(const std::vector<double>& knots) {
+TColStd_Array1OfReal flat_knots(const std::vector<double>& knots, int degree) {
   const int spans = static_cast<int>(knots.size()) - 1;
-  TColStd_Array1OfReal flat(1, spans + 1 + 2 * kDegree);
+  TColStd_Array1OfReal flat(1, spans + 1 + 2 * degree);
   for (int i = flat.Lower(); i <= flat.Upper(); ++i)
-    flat(i) = knots[static_cast<std::size_t>(std::clamp(i - 1 - kDegree, 0, spans))];
+    flat(i) = knots[static_cast<std::size_t>(std::clamp(i - 1 - degree, 0, spans))];
   return flat;
 }
 
@@ -52,36 +49,36 @@ TColStd_Array1OfReal flat_knots(const std::vector<double>& knots) {
 /// are the Greville points themselves and only the heights need solving. Source: de Boor 2001, chapters IX
 /// and XIII.
 Handle(Geom_BSplineSurface)
-    interpolate(const MirrorBlank& blank, const OutlineBox& box, const std::vector<double>& u_knots,
-                const std::vector<double>& v_knots) {
-  const TColStd_Array1OfReal u_flat = flat_knots(u_knots), v_flat = flat_knots(v_knots);
-  TColStd_Array1OfReal u(1, u_flat.Length() - kDegree - 1), v(1, v_flat.Length() - kDegree - 1);
-  BSplCLib::BuildSchoenbergPoints(kDegree, u_flat, u);
-  BSplCLib::BuildSchoenbergPoints(kDegree, v_flat, v);
+    interpolate(const HeightField& field, const OutlineBox& box, int degree,
+                const std::vector<double>& u_knots, const std::vector<double>& v_knots) {
+  const TColStd_Array1OfReal u_flat = flat_knots(u_knots, degree), v_flat = flat_knots(v_knots, degree);
+  TColStd_Array1OfReal u(1, u_flat.Length() - degree - 1), v(1, v_flat.Length() - degree - 1);
+  BSplCLib::BuildSchoenbergPoints(degree, u_flat, u);
+  BSplCLib::BuildSchoenbergPoints(degree, v_flat, v);
   TColgp_Array2OfPnt poles(1, u.Length(), 1, v.Length());
   for (int i = 1; i <= u.Length(); ++i)
     for (int j = 1; j <= v.Length(); ++j) {
       const double x = std::clamp(u(i), box.min.x, box.max.x), y = std::clamp(v(j), box.min.y, box.max.y);
-      poles(i, j) = gp_Pnt(x, y, ideal_sag_mm(blank, box, x, y));
+      poles(i, j) = gp_Pnt(x, y, field(x, y));
     }
   int problem = 0;
-  BSplSLib::Interpolate(kDegree, kDegree, u_flat, v_flat, u, v, poles, problem);
-  if (problem != 0) throw Error("mirror", "Glass", "the interpolation of the surface failed");
+  BSplSLib::Interpolate(degree, degree, u_flat, v_flat, u, v, poles, problem);
+  if (problem != 0) throw Error("", "surface", "the interpolation of the surface failed");
 
-  const auto multiplicities = [](std::size_t count) {
+  const auto multiplicities = [degree](std::size_t count) {
     TColStd_Array1OfInteger m(1, static_cast<int>(count));
     m.Init(1);
-    m(m.Lower()) = m(m.Upper()) = kDegree + 1;
+    m(m.Lower()) = m(m.Upper()) = degree + 1;
     return m;
   };
   const TColStd_Array1OfReal u_array(u_knots.front(), 1, static_cast<int>(u_knots.size()));
   const TColStd_Array1OfReal v_array(v_knots.front(), 1, static_cast<int>(v_knots.size()));
   return new Geom_BSplineSurface(poles, u_array, v_array, multiplicities(u_knots.size()),
-                                 multiplicities(v_knots.size()), kDegree, kDegree);
+                                 multiplicities(v_knots.size()), degree, degree);
 }
 
 /// Largest difference from the ideal surface at four points of every span in each direction.
-double largest_error_mm(const MirrorBlank& blank, const OutlineBox& box, const Geom_BSplineSurface& surface,
+double largest_error_mm(const HeightField& field, const HeightFit& fit, const Geom_BSplineSurface& surface,
                         const std::vector<double>& u_knots, const std::vector<double>& v_knots) {
   constexpr int kPerSpan = 4;
   const auto samples = [](const std::vector<double>& knots) {
@@ -94,30 +91,25 @@ double largest_error_mm(const MirrorBlank& blank, const OutlineBox& box, const G
   double worst = 0;
   const std::vector<double> v_samples = samples(v_knots);
   for (const double x : samples(u_knots))
-    for (const double y : v_samples)
-      worst = std::max(worst, std::abs(surface.Value(x, y).Z() - ideal_sag_mm(blank, box, x, y)));
+    for (const double y : v_samples) {
+      if (fit.inside && !fit.inside(x, y)) continue;
+      worst = std::max(worst, std::abs(surface.Value(x, y).Z() - field(x, y)));
+    }
   return worst;
 }
 
 }  // namespace
 
-Handle(Geom_BSplineSurface) glass_surface(const MirrorBlank& blank) {
-  const OutlineBox box = outline_box(blank);
-  std::optional<double> line;  // the third derivative jumps at the aspheric boundary, so a knot belongs there
-  if (blank.aspheric)
-    line = blank.aspheric->towards_minus_x ? -blank.aspheric->boundary_mm : blank.aspheric->boundary_mm;
-  double error = 0;
+FittedSurface fit_height_field(const HeightField& field, const OutlineBox& box, const HeightFit& fit) {
+  FittedSurface fitted;
   for (int spans = 8; spans <= kMostSpans; spans *= 2) {
-    const std::vector<double> u = knots_with(box.min.x, box.max.x, spans, line);
+    const std::vector<double> u = knots_with(box.min.x, box.max.x, spans, fit.x_line);
     const std::vector<double> v = knots_with(box.min.y, box.max.y, spans, std::nullopt);
-    const Handle(Geom_BSplineSurface) surface = interpolate(blank, box, u, v);
-    error = largest_error_mm(blank, box, *surface, u, v);
-    if (error <= kTolerance_mm) return surface;
+    fitted.surface = interpolate(field, box, fit.degree, u, v);
+    fitted.error_mm = largest_error_mm(field, fit, *fitted.surface, u, v);
+    if (fitted.error_mm <= fit.tolerance_mm) break;
   }
-  throw Error(
-      "mirror", "radius",
-      "the glass is too steep at its edge for a B-spline within 1e-6 mm: " + std::to_string(error) + " mm",
-      "make the glass smaller or the radius larger");
+  return fitted;
 }
 
 }  // namespace catoptra::cad_import

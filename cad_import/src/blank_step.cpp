@@ -1,4 +1,4 @@
-// Writes a mirror glass as STEP and reads it again before anyone else may.
+// Writes a solid as STEP and reads it again before anyone else may.
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <IFSelect_ReturnStatus.hxx>
@@ -19,8 +19,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "cad_import/src/blank_parts.h"
 #include "cad_import/src/kernel_session.h"
-#include "cad_import/src/mirror_blank_parts.h"
 
 namespace catoptra::cad_import {
 namespace {
@@ -49,22 +49,22 @@ class TemporaryFile {
 };
 
 /// A label tree with the solid and the names of its faces.
-Handle(TDocStd_Document) document_of(const MirrorSolid& mirror) {
+Handle(TDocStd_Document) document_of(const NamedSolid& made) {
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
   const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
-  const TDF_Label solid = shapes->AddShape(mirror.solid, false);
-  TDataStd_Name::Set(solid, "Mirror");
-  for (const NamedFace& named : mirror.faces)
+  const TDF_Label solid = shapes->AddShape(made.solid, false);
+  TDataStd_Name::Set(solid, made.name.c_str());
+  for (const NamedFace& named : made.faces)
     TDataStd_Name::Set(shapes->AddSubShape(solid, named.face), named.name.c_str());
   return document;
 }
 
-void write_step(const MirrorSolid& mirror, const std::filesystem::path& file, const std::string& title) {
+void write_step(const NamedSolid& made, const std::filesystem::path& file, const std::string& title) {
   KernelSession session;
   STEPCAFControl_Controller::Init();  // defines the parameter that follows
   session.set("write.stepcaf.subshapes.name", "1");
-  const Handle(TDocStd_Document) document = document_of(mirror);
+  const Handle(TDocStd_Document) document = document_of(made);
   STEPCAFControl_Writer writer;
   const bool transferred = writer.Transfer(document);
   XCAFApp_Application::GetApplication()->Close(document);
@@ -77,7 +77,7 @@ void write_step(const MirrorSolid& mirror, const std::filesystem::path& file, co
 }
 
 /// What a reader will find: one valid solid whose faces carry the names they were given.
-void check_written(const std::filesystem::path& file, const MirrorSolid& mirror) {
+void check_written(const std::filesystem::path& file, const NamedSolid& made) {
   const KernelSession session;
   STEPControl_Reader reader;
   if (reader.ReadFile(file.string().c_str()) != IFSelect_RetDone)
@@ -89,7 +89,7 @@ void check_written(const std::filesystem::path& file, const MirrorSolid& mirror)
   if (solids != 1 || !BRepCheck_Analyzer(shape).IsValid())
     throw Error(file.string(), "", "does not read back as one valid solid");
   std::vector<std::string> expected, found;
-  for (const NamedFace& named : mirror.faces) expected.push_back(named.name);
+  for (const NamedFace& named : made.faces) expected.push_back(named.name);
   const Handle(StepData_StepModel) model = reader.StepModel();
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const auto face = Handle(StepShape_AdvancedFace)::DownCast(model->Value(i));
@@ -102,12 +102,10 @@ void check_written(const std::filesystem::path& file, const MirrorSolid& mirror)
 
 }  // namespace
 
-void write_mirror_blank(const MirrorBlank& blank, const std::filesystem::path& file) try {
-  check_blank(blank);
-  const MirrorSolid mirror = mirror_solid(blank);
+void write_named_solid(const NamedSolid& solid, const std::filesystem::path& file) try {
   const TemporaryFile temporary(file);
-  write_step(mirror, temporary.path(), file.filename().string());
-  check_written(temporary.path(), mirror);
+  write_step(solid, temporary.path(), file.filename().string());
+  check_written(temporary.path(), solid);
   temporary.commit();
 } catch (const Standard_Failure& failure) {
   throw Error(file.string(), "", std::string("the kernel failed: ") + failure.GetMessageString());
