@@ -49,10 +49,14 @@ class SpanAxis {
   [[nodiscard]] Position locate(double t) const;
 
  private:
-  std::vector<double> breaks_;         // distinct knots within the domain
-  std::vector<double> middle_, rate_;  // per span: centre, 2 / length
-  std::vector<int> first_pole_;        // per span
-  std::vector<std::int32_t> bucket_;   // even buckets over the domain -> a span at or before
+  struct Span {
+    double upper;         // where the next one begins; infinite for the last
+    double middle, rate;  // centre, 2 / length
+  };
+  std::vector<double> breaks_;  // distinct knots within the domain
+  std::vector<Span> spans_;
+  std::vector<int> first_pole_;       // per span
+  std::vector<std::int32_t> bucket_;  // even buckets over the domain -> the span a little before their begin
   double bucket_rate_ = 0;
   double period_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "cad_import/error.h"
@@ -10,6 +11,10 @@
 
 namespace catoptra::cad_import {
 namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kMostBuckets = 64;  // per span: spans more uneven than that cost a step or two more
+constexpr double kRounding = 1e-14;  // share of the domain: above the rounding of a bucket's begin
 
 void check(const BSplineData& d) {
   const auto fail = [](const std::string& reason) { throw Error("", "B-spline surface", reason); };
@@ -39,38 +44,42 @@ struct BSplineSurface::Homogeneous {
 SpanAxis::SpanAxis(std::span<const double> knots, int degree, double period) : period_(period) {
   const int last = int(knots.size()) - degree - 1;
   if (!std::ranges::is_sorted(knots)) throw Error("", "B-spline", "knots fall");
+  double shortest = kInfinite;
   for (int k = degree; k < last; ++k) {
-    if (!(knots[k + 1] > knots[k])) continue;  // a multiple knot
+    const double length = knots[k + 1] - knots[k];
+    if (!(length > 0)) continue;  // a multiple knot
     breaks_.push_back(knots[k]);
     first_pole_.push_back(k - degree);
-    middle_.push_back(0.5 * (knots[k] + knots[k + 1]));
-    rate_.push_back(2 / (knots[k + 1] - knots[k]));
+    spans_.push_back({knots[k + 1], 0.5 * (knots[k] + knots[k + 1]), 2 / length});
+    shortest = std::min(shortest, length);
   }
   if (breaks_.empty()) throw Error("", "B-spline", "its knots leave no span");
   breaks_.push_back(knots[last]);
+  spans_.back().upper = kInfinite;
 
-  // Two buckets per span: even knots then need no step beyond the table.
-  const int buckets = std::max(1, 2 * span_count());
+  // Buckets shorter than the shortest span hold at most one break: then one comparison finds the span.
+  const double most = kMostBuckets * double(span_count());
+  const int buckets = int(std::clamp(std::ceil(2 * (end() - begin()) / shortest), 1.0, most));
   bucket_rate_ = buckets / (end() - begin());
   int s = 0;
   for (int b = 0; b < buckets; ++b) {
-    const double t = begin() + b / bucket_rate_;
-    while (s + 1 < span_count() && breaks_[s + 1] <= t) ++s;
-    bucket_.push_back(std::max(0, s - (breaks_[s] > t ? 1 : 0)));
+    // A little before the bucket's begin, as rounding may put a parameter just below it here.
+    const double from_begin = (b - kRounding * buckets) / bucket_rate_;
+    while (spans_[s].upper - begin() <= from_begin) ++s;
+    bucket_.push_back(s);
   }
 }
 
+// Without branches that depend on t: at random parameters the processor would guess every other one wrong,
+// which costs as much as the polynomials.
 SpanAxis::Position SpanAxis::locate(double t) const {
   if (period_ > 0 && !(t >= begin() && t <= end())) t -= period_ * std::floor((t - begin()) / period_);
-  int s = 0;
-  if (t >= end())
-    s = span_count() - 1;
-  else if (t > begin()) {
-    s = bucket_[std::min(std::int32_t((t - begin()) * bucket_rate_), std::int32_t(bucket_.size()) - 1)];
-    while (s > 0 && t < breaks_[s]) --s;
-    while (s + 1 < span_count() && t >= breaks_[s + 1]) ++s;
-  }
-  return {s, (t - middle_[s]) * rate_[s], rate_[s]};
+  const double at = std::min(std::max(0.0, (t - begin()) * bucket_rate_), double(bucket_.size() - 1));
+  int s = bucket_[std::size_t(std::int32_t(at))];
+  s += int(t >= spans_[s].upper);
+  while (t >= spans_[s].upper) ++s;  // only where a span is far shorter than the others
+  const Span& span = spans_[s];
+  return {s, (t - span.middle) * span.rate, span.rate};
 }
 
 BSplineSurface::BSplineSurface(const BSplineData& data, double orientation, SurfaceKind kind)
@@ -125,10 +134,12 @@ void BSplineSurface::build_blocks(const BSplineData& data) {
 }
 
 // Horner over v in every row, then over u across the rows; derivatives ride along. P and Q are the degrees
-// where they are known when compiling (the loops unroll and the rows run side by side), else -1.
+// where they are known when compiling (the loops unroll and the rows run side by side), else -1. This and
+// what follows is inlined up to the virtual members: results would else pass through memory from call to
+// call.
 template <int Order, int P, int Q>
-BSplineSurface::Homogeneous BSplineSurface::evaluate_power(const glm::dvec4* block, double x,
-                                                           double y) const {
+[[gnu::always_inline]] inline BSplineSurface::Homogeneous BSplineSurface::evaluate_power(
+    const glm::dvec4* block, double x, double y) const {
   const int p = P >= 0 ? P : degree_u_, q = Q >= 0 ? Q : degree_v_;
   Homogeneous h{};
   for (int i = p; i >= 0; --i) {
@@ -158,8 +169,8 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate_power(const glm::dvec4* blo
 }
 
 template <int Order>
-BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(const glm::dvec4* block, double x,
-                                                            double y) const {
+[[gnu::always_inline]] inline BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(
+    const glm::dvec4* block, double x, double y) const {
   const BernsteinBasis bu(degree_u_, x), bv(degree_v_, y);
   Homogeneous h{};
   for (int i = 0; i <= degree_u_; ++i) {
@@ -185,8 +196,8 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate_bezier(const glm::dvec4* bl
 }
 
 template <int Order>
-BSplineSurface::Homogeneous BSplineSurface::evaluate_block(const glm::dvec4* block, double x,
-                                                           double y) const {
+[[gnu::always_inline]] inline BSplineSurface::Homogeneous BSplineSurface::evaluate_block(
+    const glm::dvec4* block, double x, double y) const {
   if (!power_basis_) return evaluate_bezier<Order>(block, x, y);
   if (degree_u_ == 3 && degree_v_ == 3) return evaluate_power<Order, 3, 3>(block, x, y);
   if (degree_u_ == 2 && degree_v_ == 2) return evaluate_power<Order, 2, 2>(block, x, y);
@@ -197,7 +208,7 @@ BSplineSurface::Homogeneous BSplineSurface::evaluate_block(const glm::dvec4* blo
 // Locates the span, evaluates, turns local derivatives into those by u and v, and divides by the weight
 // (Piegl and Tiller, eq. 4.20).
 template <int Order>
-BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
+[[gnu::always_inline]] inline BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
   const SpanAxis::Position pu = axis_u_.locate(u), pv = axis_v_.locate(v);
   const glm::dvec4* block = coefficients_.data() +
                             (std::size_t(pu.span) * axis_v_.span_count() + pv.span) * coefficients_per_span();

@@ -65,25 +65,21 @@ SpanMatrix span_matrix(std::span<const double> flat_knots, int degree, int first
 // below.
 BernsteinBasis::BernsteinBasis(int degree, double x) {
   const double s = 0.5 * (1 + x), r = 0.5 * (1 - x);
+  const auto raise = [s, r](const auto& from, auto& to, int n) {  // from the last, so that `to` may be `from`
+    to[n] = s * from[n - 1];
+    for (int k = n - 1; k > 0; --k) to[k] = r * from[k] + s * from[k - 1];
+    to[0] = r * from[0];
+  };
   std::array<double, BSplineSurface::kMaxDegree + 1> one_less{}, two_less{};
-  value[0] = 1;
-  for (int n = 1; n <= degree; ++n) {
-    two_less = one_less;
-    one_less = value;
-    for (int k = n; k >= 0; --k) value[k] = (k < n ? r * one_less[k] : 0) + (k > 0 ? s * one_less[k - 1] : 0);
-  }
-  // d/dx = 1/2 d/ds.
-  for (int k = 0; k <= degree; ++k) {
-    const auto at = [k](const auto& basis, int shift, int count) {
-      const int i = k - shift;
-      return i >= 0 && i < count ? basis[i] : 0.0;
-    };
-    first[k] = 0.5 * degree * (at(one_less, 1, degree) - at(one_less, 0, degree));
-    if (degree >= 2)
-      second[k] =
-          0.25 * degree * (degree - 1) *
-          (at(two_less, 2, degree - 1) - 2 * at(two_less, 1, degree - 1) + at(two_less, 0, degree - 1));
-  }
+  two_less[0] = one_less[0] = 1;
+  for (int n = 1; n <= degree - 2; ++n) raise(two_less, two_less, n);
+  if (degree >= 2) raise(two_less, one_less, degree - 1);
+  raise(one_less, value, degree);
+  // d/dx = 1/2 d/ds; beyond a basis's own degree its entries are 0.
+  const auto at = [](const auto& basis, int k) { return k >= 0 ? basis[k] : 0.0; };
+  for (int k = 0; k <= degree; ++k) first[k] = 0.5 * degree * (at(one_less, k - 1) - one_less[k]);
+  for (int k = 0; degree >= 2 && k <= degree; ++k)
+    second[k] = 0.25 * degree * (degree - 1) * (at(two_less, k - 2) - 2 * at(two_less, k - 1) + two_less[k]);
 }
 
 }  // namespace catoptra::cad_import

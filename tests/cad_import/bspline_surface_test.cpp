@@ -178,6 +178,29 @@ TEST(BSplineSurface, ManyThreadsSeeTheSameNumbers) {
   for (const glm::dvec3& result : results) EXPECT_EQ(result, expected);
 }
 
+// The span is the one a walk over the knots finds, also on every knot and next to it, whatever the lengths of
+// the spans (up to 1 : 1e9, which no table of even buckets resolves) and wherever the domain begins.
+TEST(SpanAxis, LocatesEveryParameterOnUnevenKnots) {
+  std::mt19937 random = seeded(1);
+  std::uniform_real_distribution<double> exponent(-9, 0), share(-0.1, 1.1);
+  for (const double begin : {0.0, -3.7, 1e6}) {
+    std::vector<double> knots{begin};
+    for (int i = 0; i < 40; ++i) knots.push_back(knots.back() + std::pow(10, exponent(random)));
+    const SpanAxis axis(knots, 1, 0);
+    std::vector<double> parameters;
+    for (int i = 0; i < 2000; ++i)
+      parameters.push_back(axis.begin() + share(random) * (axis.end() - axis.begin()));
+    for (const double knot : knots)
+      for (const double t : {knot, std::nextafter(knot, -1e300), std::nextafter(knot, 1e300)})
+        parameters.push_back(t);
+    for (const double t : parameters) {
+      int expected = 0;
+      while (expected + 1 < axis.span_count() && t >= axis.span_begin(expected + 1)) ++expected;
+      ASSERT_EQ(axis.locate(t).span, expected) << "t " << t << ", domain from " << begin;
+    }
+  }
+}
+
 TEST(BSplineSurface, RefusesDataThatContradictThemselves) {
   const BSplineData good{
       1, 1, 2, 2, {0, 0, 1, 1}, {0, 0, 1, 1}, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, {}, 0, 0};
