@@ -50,7 +50,7 @@ class SpanAxis {
 
  private:
   struct Span {
-    double upper;         // where the next one begins; infinite for the last
+    double upper;         // where the next one begins; not a number for the last
     double middle, rate;  // centre, 2 / length
   };
   std::vector<double> breaks_;  // distinct knots within the domain

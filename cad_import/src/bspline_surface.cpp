@@ -55,7 +55,7 @@ SpanAxis::SpanAxis(std::span<const double> knots, int degree, double period) : p
   }
   if (breaks_.empty()) throw Error("", "B-spline", "its knots leave no span");
   breaks_.push_back(knots[last]);
-  spans_.back().upper = kInfinite;
+  spans_.back().upper = std::numeric_limits<double>::quiet_NaN();  // no comparison with it is true
 
   // Buckets shorter than the shortest span hold at most one break: then one comparison finds the span.
   const double most = kMostBuckets * double(span_count());

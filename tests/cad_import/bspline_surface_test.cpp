@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <thread>
 
@@ -198,6 +199,9 @@ TEST(SpanAxis, LocatesEveryParameterOnUnevenKnots) {
       while (expected + 1 < axis.span_count() && t >= axis.span_begin(expected + 1)) ++expected;
       ASSERT_EQ(axis.locate(t).span, expected) << "t " << t << ", domain from " << begin;
     }
+    EXPECT_EQ(axis.locate(std::numeric_limits<double>::infinity()).span, axis.span_count() - 1);
+    EXPECT_EQ(axis.locate(-std::numeric_limits<double>::infinity()).span, 0);
+    EXPECT_EQ(axis.locate(std::nan("")).span, 0);
   }
 }
 
