@@ -13,7 +13,10 @@ build: setup
 	@cmake --preset release
 	@cmake --build --preset release
 
-demo: build
+# Builds what the demonstration needs and no tests.
+demo: setup
+	@cmake --preset release
+	@cmake --build --preset release --target catoptra examples
 	@scripts/demo.sh
 
 test: build
