@@ -101,6 +101,9 @@ Dispersion::Dispersion(std::vector<IndexSample> samples)
     : formula_(DispersionFormula::table), samples_(std::move(samples)) {
   std::sort(samples_.begin(), samples_.end(),
             [](const IndexSample& a, const IndexSample& b) { return a.wavelength_nm < b.wavelength_nm; });
+  // Tables joined from two sources repeat a wavelength; a slope there has no meaning.
+  const auto repeated = std::ranges::unique(samples_, {}, &IndexSample::wavelength_nm);
+  samples_.erase(repeated.begin(), repeated.end());
   min_nm_ = samples_.front().wavelength_nm;
   max_nm_ = samples_.back().wavelength_nm;
 }

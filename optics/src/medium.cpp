@@ -1,52 +1,13 @@
 #include "optics/medium.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "optics/src/names.h"
+
 namespace catoptra::optics {
-namespace {
-
-/// Letters and digits only, lower case: "CR-39", "cr 39" and "CR39" are one name.
-std::string folded(std::string_view name) {
-  std::string key;
-  for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) || c == '.')
-      key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return key;
-}
-
-/// Levenshtein distance.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitution = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
-  }
-  return row.back();
-}
-
-std::string nearest_names(std::string_view name, std::span<const Medium> media) {
-  const std::string key = folded(name);
-  std::vector<std::pair<std::size_t, std::string>> ranked;
-  for (const Medium& medium : media)
-    ranked.emplace_back(edit_distance(key, folded(medium.name)), medium.name);
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::string text;
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, ranked.size()); ++i)
-    text += (i ? ", " : "") + ranked[i].second;
-  return text;
-}
-
-}  // namespace
 
 Medium air() {
   return {"air", Dispersion(1.0), 1, 1, 0, "by definition of ISO 13666", Certainty::verified};
@@ -80,8 +41,10 @@ const Medium& MediumCatalogue::find(std::string_view name) const {
   const auto found =
       std::find_if(media_.begin(), media_.end(), [&](const Medium& m) { return folded(m.name) == key; });
   if (found != media_.end()) return *found;
+  std::vector<std::string> names;
+  for (const Medium& medium : media_) names.push_back(medium.name);
   throw Error("", "material \"" + std::string(name) + "\"", "is not in the catalogue",
-              "nearest names: " + nearest_names(name, media_));
+              "nearest names: " + nearest_names(name, names));
 }
 
 void MediumCatalogue::add(std::span<const Medium> media) {

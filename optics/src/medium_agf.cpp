@@ -1,10 +1,12 @@
 // Glass catalogues in .agf format: NM (name, formula, MIL number, n_d, V_d), CD (coefficients), LD (range,
 // micrometres). Field meanings: nzhagen/zemaxglass and facts checked against nd of every glass in the tests.
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "optics/medium.h"
 
@@ -40,6 +42,10 @@ Medium finish(const std::filesystem::path& file, const Entry& entry) {
   medium.name = entry.name;
   medium.dispersion = {kFormulas[static_cast<std::size_t>(entry.formula)], entry.coefficients, entry.min_nm,
                        entry.max_nm};
+  // A negative square of the index, or a pole of the formula: wrong coefficients or a wrong formula number.
+  const double middle_nm = entry.max_nm > 0 ? 0.5 * (entry.min_nm + entry.max_nm) : kLineD_nm;
+  if (!std::isfinite(medium.index(middle_nm)))
+    fail(file, entry.line, "the coefficients of glass \"" + entry.name + "\" give no refractive index");
   medium.nd = entry.nd;
   medium.vd = entry.vd;
   medium.source = file.filename().string();
@@ -59,6 +65,12 @@ Entry read_name(const std::filesystem::path& file, std::istringstream& fields, s
   return entry;
 }
 
+std::string without_byte_order_mark(const std::string& text) {
+  for (const std::string_view mark : {"\xff\xfe", "\xfe\xff", "\xef\xbb\xbf"})
+    if (text.starts_with(mark)) return text.substr(mark.size());
+  return text;
+}
+
 }  // namespace
 
 std::vector<Medium> read_agf(const std::filesystem::path& file) {
@@ -68,6 +80,7 @@ std::vector<Medium> read_agf(const std::filesystem::path& file) {
   std::optional<Entry> entry;
   std::string text;
   for (std::size_t line = 1; std::getline(in, text); ++line) {
+    if (line == 1) text = without_byte_order_mark(text);
     std::erase(text, '\0');  // some catalogues are UTF-16 with Latin letters only
     std::istringstream fields(text);
     std::string tag;
