@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "cad_import/error.h"
 #include "render/scene.h"
 
 namespace catoptra::render {
@@ -40,18 +41,17 @@ struct CameraRays {
   }
 };
 
-/// Columns run to the right, rows down. An `up` along the view direction is replaced by some other one.
+/// Columns run to the right, rows down. Throws catoptra::Error for a camera that has no picture.
 [[nodiscard]] inline CameraRays camera_rays(const Camera& camera, int width, int height) {
+  const glm::dvec3 view = camera.target_mm - camera.eye_mm, across = glm::cross(view, camera.up);
+  if (!(glm::length(across) > 1e-12 * glm::length(view) * glm::length(camera.up)))
+    throw Error({}, "camera", "looks along its own up vector, or at its own eye", "change target or up");
+  if (!(camera.fov_rad > 0 && camera.fov_rad < std::numbers::pi))
+    throw Error({}, "camera", "field of view is not between 0 and 180 degrees");
   CameraRays rays;
   rays.eye_mm = camera.eye_mm;
-  const glm::dvec3 view = camera.target_mm - camera.eye_mm;
-  rays.forward = glm::length(view) > 0 ? glm::normalize(view) : glm::dvec3(0, 1, 0);
-  glm::dvec3 right = glm::cross(rays.forward, camera.up);
-  if (glm::length(right) <= 1e-12 * glm::length(camera.up))
-    right =
-        glm::cross(rays.forward, std::abs(rays.forward.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
-  right = glm::normalize(right);
-  const glm::dvec3 up = glm::cross(right, rays.forward);
+  rays.forward = glm::normalize(view);
+  const glm::dvec3 right = glm::normalize(across), up = glm::cross(right, rays.forward);
   rays.pixel = 2 * std::tan(0.5 * camera.fov_rad) / height;
   rays.dx = rays.pixel * right;
   rays.dy = -rays.pixel * up;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "cad_import/error.h"
 #include "optics/reflection.h"
 #include "render/src/sampling.h"
 #include "tests/render/ray_scenes.h"
@@ -216,6 +217,18 @@ TEST(RayTracerGeometry, MirrorShowsOtherMirrorsButNotItself) {
     if (frame.optic_id[i] != 0 || frame.position[i].w == 0) continue;
     EXPECT_TRUE(std::abs(z - 320) < 1 || z > 3999) << z;
   }
+}
+
+TEST(RayTracerGeometry, CamerasWithoutAPictureAreErrors) {
+  render::Camera camera;
+  camera.up = camera.target_mm - camera.eye_mm;
+  EXPECT_THROW((void)render::camera_rays(camera, 8, 8), Error);
+  camera = {};
+  camera.target_mm = camera.eye_mm;
+  EXPECT_THROW((void)render::camera_rays(camera, 8, 8), Error);
+  camera = {};
+  camera.fov_rad = 4;
+  EXPECT_THROW((void)render::camera_rays(camera, 8, 8), Error);
 }
 
 }  // namespace
