@@ -59,6 +59,9 @@ struct FrameOptions {
   bool read_back = true;     ///< false: leave the picture on the GPU (bench)
   bool overlay_vertices = false;  ///< red balls at the exact hits, and the optic's mesh in white
   bool overlay_rays = false;      ///< the vertex rays as lines
+  /// Keep from the last frame what cannot have changed: vertex rays, viewpoints and maps while eye and optic
+  /// stay (PVRR paper, 5). Changes no picture, only its cost; false: everything anew in every frame.
+  bool reuse_static = true;
 };
 
 }  // namespace catoptra::render

@@ -1,5 +1,6 @@
 // The optic with a cube map drawn at its centre, looked up with the reflected direction: the baseline that PVRR is
-// compared with (paper, Fig. 1). Variant: GEOMETRY. Needs raster_view.glsl, raster_shading.glsl, raster_optic.glsl.
+// compared with (paper, Fig. 1). Variant: GEOMETRY. Needs raster_view.glsl, raster_shading.glsl, raster_shown.glsl,
+// raster_optic.glsl.
 
 in vec3 v_relative;
 in vec3 v_normal;

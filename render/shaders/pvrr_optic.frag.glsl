@@ -1,5 +1,5 @@
 // PVRR pass 2 (paper 3.1, step 4): the optic with its reflection map. Variant: GEOMETRY.
-// Needs raster_view.glsl, raster_shading.glsl, raster_optic.glsl.
+// Needs raster_view.glsl, raster_shading.glsl, raster_shown.glsl, raster_optic.glsl.
 
 in vec3 v_relative;
 in vec3 v_normal;

@@ -24,7 +24,7 @@ int face_size(const Camera& camera, const FrameOptions& options, double texels_p
 }  // namespace
 
 CubemapFrame::CubemapFrame(const Scene& scene, RasterScene& raster)
-    : scene_(scene), raster_(raster), cubes_(scene.optics.size()) {
+    : scene_(scene), raster_(raster), cubes_(scene.optics.size()), lenses_(scene.optics.size()) {
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 }
 
@@ -36,6 +36,9 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   const double pixels_per_tangent = options.height / (2 * std::tan(camera.fov_rad / 2));
   const double total_ms = gl_time_ms([&] {
     picture.begin(options);
+    for (std::size_t i = 0; i < lenses_.size(); ++i)
+      if (scene_.optics[i].kind == optics::OpticKind::lens)
+        trace_lens(i, camera.eye_mm, options.reuse_static);
     // The cube map does not change while the samples move within their pixels.
     pass1_ms = gl_time_ms([&] {
       for (std::size_t i = 0; i < cubes_.size(); ++i)
@@ -48,7 +51,7 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
         pass.geometry = options.geometry && sample == 0;
         picture.target().bind(pass.geometry);
         raster_.draw(view, pass);
-        for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, view, pass.geometry);
+        for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, picture.target(), view, pass.geometry);
         picture.add_sample();
       });
     if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
@@ -94,22 +97,59 @@ void CubemapFrame::draw_cube(std::size_t optic, int size, double texels_per_pixe
       glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT1, cube.position.id(), 0, face);
       glNamedFramebufferTextureLayer(framebuffer.id(), GL_COLOR_ATTACHMENT2, cube.detail.id(), 0, face);
     }
-    raster_.draw(cube_face_view(raster_.optic(optic).center_mm(), face, size), pass);
+    raster_.draw(cube_face_view(center_mm(optic), face, size), pass);
   }
 }
 
-void CubemapFrame::draw_optic(std::size_t optic, const RasterView& camera, bool geometry) {
+void CubemapFrame::set_cube_geometry(const Cube& cube, const glm::dvec3& center_mm) {
+  const glm::vec3 center(center_mm);
+  glUniform3f(kCubeCenter, center.x, center.y, center.z);
+  glBindTextureUnit(kMapPositionUnit, cube.position.id());
+  glBindTextureUnit(kMapDetailUnit, cube.detail.id());
+}
+
+void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool reuse) {
+  Lens& lens = lenses_[optic];
+  if (reuse && lens.eye_mm == eye_mm) return;
+  if (!lens.tracer) lens.tracer = std::make_unique<optics::LensTracer>(scene_.optics[optic]);
+  lens.eye_mm = eye_mm;
+  const LensRays rays = refract_eye_rays(scene_.optics[optic], *lens.tracer, eye_mm);
+  std::vector<std::vector<glm::dvec3>> directions;
+  for (const auto& of_sample : rays.hits) {
+    auto& some = directions.emplace_back();
+    for (const optics::VertexHit& hit : of_sample) some.push_back(hit.direction);
+  }
+  lens.raster.set_shown(raster_.side(optic, rays.entered), rays, directions);
+}
+
+glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {
+  const glm::dvec3& front = raster_.optic(optic).center_mm();
+  if (scene_.optics[optic].kind == optics::OpticKind::mirror) return front;
+  return 0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm());
+}
+
+void CubemapFrame::draw_lens(std::size_t optic, const RasterTarget& target, const RasterView& camera,
+                             bool geometry) {
+  const Cube& cube = cubes_[optic];
+  lenses_[optic].raster.draw(camera, target, geometry, LensLook::cube, lens_programs_, scene_.optics[optic],
+                             optic, scene_.environment.ambient, [&] {
+                               glBindTextureUnit(kMapColorUnit, cube.color.id());
+                               if (geometry) set_cube_geometry(cube, center_mm(optic));
+                             });
+}
+
+void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
+                              bool geometry) {
+  if (scene_.optics[optic].kind == optics::OpticKind::lens) {
+    draw_lens(optic, target, camera, geometry);
+    return;
+  }
   const Cube& cube = cubes_[optic];
   glUseProgram(optic_program(geometry).id());
   RasterScene::set_mesh_origin(camera, raster_.optic(optic).center_mm());
   set_optic_uniforms(scene_.optics[optic], optic);
   glBindTextureUnit(kMapColorUnit, cube.color.id());
-  if (geometry) {
-    const glm::vec3 center(raster_.optic(optic).center_mm());
-    glUniform3f(kCubeCenter, center.x, center.y, center.z);
-    glBindTextureUnit(kMapPositionUnit, cube.position.id());
-    glBindTextureUnit(kMapDetailUnit, cube.detail.id());
-  }
+  if (geometry) set_cube_geometry(cube, center_mm(optic));
   raster_.optic(optic).draw_surface();
 }
 
@@ -119,8 +159,8 @@ const GlProgram& CubemapFrame::optic_program(bool geometry) {
   const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
   return optic_programs_
       .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_shading.glsl", "raster_optic.glsl",
-                                       "cubemap_optic.frag.glsl"},
+                                      {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
+                                       "raster_optic.glsl", "cubemap_optic.frag.glsl"},
                                       defines))
       .first->second;
 }

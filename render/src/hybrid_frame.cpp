@@ -88,8 +88,12 @@ void HybridFrame::draw_mask(const RasterView& view) {
   glBindFramebuffer(GL_FRAMEBUFFER, mask_framebuffer_.id());
   glUseProgram(mask_program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
-    RasterScene::set_mesh_origin(view, raster_.optic(i).center_mm());
-    raster_.optic(i).draw_surface();
+    const optics::Optic& optic = scene_.optics[i];
+    const RasterOptic& seen = optic.kind == optics::OpticKind::mirror
+                                  ? raster_.optic(i)
+                                  : raster_.side(i, optics::side_towards(optic, view.origin_mm));
+    RasterScene::set_mesh_origin(view, seen.center_mm());
+    seen.draw_surface();
   }
 }
 

@@ -27,7 +27,7 @@ int texels(double wanted) {
 
 }  // namespace
 
-PvrrMapSize choose_map_size(const optics::Optic& optic, std::span<const glm::dvec3> pixels,
+PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh, std::span<const glm::dvec3> pixels,
                             std::span<const glm::dvec3> coordinates, const optics::VirtualView& view,
                             glm::ivec2 picture, double texels_per_pixel) {
   const double aspect = (view.right_side - view.left) / (view.top - view.bottom);
@@ -35,7 +35,7 @@ PvrrMapSize choose_map_size(const optics::Optic& optic, std::span<const glm::dve
   const auto map_point = [&](std::uint32_t i) {
     return glm::dvec2(aspect * coordinates[i].x, coordinates[i].y) / coordinates[i].z;
   };
-  for (const auto& triangle : optic.mesh.triangles) {
+  for (const auto& triangle : mesh.triangles) {
     const auto [i, j, k] = triangle.vertices;
     if (pixels[i].z <= 0 || pixels[j].z <= 0 || pixels[k].z <= 0) continue;
     if (off_screen(pixels[i], pixels[j], pixels[k], picture)) continue;
@@ -67,13 +67,13 @@ void PvrrMap::set_empty(bool geometry) {
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
-void PvrrMap::draw(RasterScene& scene, std::size_t optic, const optics::VirtualView& view,
-                   glm::dvec2 offset_px, bool geometry) {
+void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
+                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry) {
   view_ = map_view(view, size_.texels, offset_px);
   clipped_ = !view.beyond_viewpoint;
   if (clipped_) {
     glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
-    scene.draw_optic_depth(view_, optic);
+    scene.draw_optic_depth(view_, surface);
   }
   RasterPass pass;
   pass.geometry = geometry;

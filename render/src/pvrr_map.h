@@ -19,11 +19,22 @@ struct PvrrMapSize {
 
 /// Chooses the map's size so that, by area over the part of the optic on the screen, `texels_per_pixel`
 /// squared texels fall on a pixel; square texels on the map's projection plane, 16 .. 4096 a side. `pixels`:
-/// the optic's vertices in pixel coordinates (z <= 0: behind the eye); `coordinates`: their map coordinates.
-[[nodiscard]] PvrrMapSize choose_map_size(const optics::Optic& optic, std::span<const glm::dvec3> pixels,
+/// the mesh's vertices in pixel coordinates (z <= 0: behind the eye, or not to be counted); `coordinates`:
+/// their map coordinates.
+[[nodiscard]] PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh,
+                                          std::span<const glm::dvec3> pixels,
                                           std::span<const glm::dvec3> coordinates,
                                           const optics::VirtualView& view, glm::ivec2 picture,
                                           double texels_per_pixel);
+
+/// The same for a mirror.
+[[nodiscard]] inline PvrrMapSize choose_map_size(const optics::Optic& mirror,
+                                                 std::span<const glm::dvec3> pixels,
+                                                 std::span<const glm::dvec3> coordinates,
+                                                 const optics::VirtualView& view, glm::ivec2 picture,
+                                                 double texels_per_pixel) {
+  return choose_map_size(mirror.mesh, pixels, coordinates, view, picture, texels_per_pixel);
+}
 
 class PvrrMap {
  public:
@@ -33,12 +44,12 @@ class PvrrMap {
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
 
-  /// Draws the surroundings as the virtual viewpoint sees them, with the other optics as diffuse bodies. What
-  /// lies between viewpoint and mirror surface (that is, behind the mirror) is cut per fragment by the
-  /// optic's own depth, unless the rays converge in front of the mirror. `offset_px`: place of the samples
-  /// within a texel.
-  void draw(RasterScene& scene, std::size_t optic, const optics::VirtualView& view, glm::dvec2 offset_px,
-            bool geometry);
+  /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies.
+  /// What lies between viewpoint and `surface`, the last that the light meets (that is, behind the mirror, or
+  /// on this side of the lens), is cut per fragment by its depth, unless the rays converge in front of it.
+  /// `offset_px`: place of the samples within a texel.
+  void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
+            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry);
 
   /// The view of the last draw(), with its depth of the optic (null where nothing is cut) for what is drawn
   /// on top.

@@ -18,16 +18,16 @@ struct Vertex {
   glm::vec3 position, normal;
 };
 
-double radius_about(const optics::Optic& optic, const glm::dvec3& center) {
+double radius_about(const tessellate::OpticArrays& mesh, const glm::dvec3& center) {
   double radius = 0;
-  for (const auto& vertex : optic.mesh.vertices)
+  for (const auto& vertex : mesh.vertices)
     radius = std::max(radius, glm::distance(vertex.position_mm, center));
   return radius;
 }
 
-std::vector<std::uint32_t> unique_edges(const optics::Optic& optic) {
+std::vector<std::uint32_t> unique_edges(const tessellate::OpticArrays& mesh) {
   std::set<Edge> edges;
-  for (const auto& triangle : optic.mesh.triangles)
+  for (const auto& triangle : mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(triangle.vertices[k], triangle.vertices[(k + 1) % 3]);
       edges.emplace(a, b);
@@ -42,11 +42,11 @@ std::vector<std::uint32_t> unique_edges(const optics::Optic& optic) {
 }
 
 /// For each vertex the first one at the same place: at a crease every face has a vertex of its own there.
-std::vector<std::uint32_t> weld(const optics::Optic& optic) {
+std::vector<std::uint32_t> weld(const tessellate::OpticArrays& mesh) {
   std::map<std::array<double, 3>, std::uint32_t> first;
   std::vector<std::uint32_t> welded;
-  welded.reserve(optic.mesh.vertices.size());
-  for (const auto& v : optic.mesh.vertices) {
+  welded.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices) {
     const std::array<double, 3> key{v.position_mm.x, v.position_mm.y, v.position_mm.z};
     welded.push_back(first.emplace(key, static_cast<std::uint32_t>(welded.size())).first->second);
   }
@@ -54,21 +54,21 @@ std::vector<std::uint32_t> weld(const optics::Optic& optic) {
 }
 
 /// Triangles that continue the surface beyond its border.
-std::vector<Vertex> make_skirt(const optics::Optic& optic, const glm::dvec3& center) {
-  const std::vector<std::uint32_t> welded = weld(optic);
+std::vector<Vertex> make_skirt(const tessellate::OpticArrays& mesh, const glm::dvec3& center) {
+  const std::vector<std::uint32_t> welded = weld(mesh);
   std::map<Edge, Edge> border;  // sorted edge -> the edge as its only triangle runs through it
-  for (const auto& triangle : optic.mesh.triangles)
+  for (const auto& triangle : mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const Edge directed{welded[triangle.vertices[k]], welded[triangle.vertices[(k + 1) % 3]]};
       const Edge sorted = std::minmax(directed.first, directed.second);
       if (!border.emplace(sorted, directed).second) border.erase(sorted);
     }
-  const double width = radius_about(optic, center);
+  const double width = radius_about(mesh, center);
   // The outward direction at a vertex is the mean over its border edges, so that the skirt has no gap at
   // corners.
   std::map<std::uint32_t, glm::dvec3> outward;
   for (const auto& [sorted, edge] : border) {
-    const auto &a = optic.mesh.vertices[edge.first], &b = optic.mesh.vertices[edge.second];
+    const auto &a = mesh.vertices[edge.first], &b = mesh.vertices[edge.second];
     const glm::dvec3 across = glm::cross(b.position_mm - a.position_mm, a.normal + b.normal);
     const double length = glm::length(across);
     if (length == 0) continue;
@@ -76,7 +76,7 @@ std::vector<Vertex> make_skirt(const optics::Optic& optic, const glm::dvec3& cen
     outward[edge.second] += across / length;
   }
   const auto vertex = [&](std::uint32_t index, bool outer) {
-    const auto& v = optic.mesh.vertices[index];
+    const auto& v = mesh.vertices[index];
     glm::dvec3 position = v.position_mm - center;
     const glm::dvec3 direction = outward[index] - glm::dot(outward[index], v.normal) * v.normal;
     if (outer && glm::length(direction) > 0) position += width * glm::normalize(direction);
@@ -94,15 +94,21 @@ std::vector<Vertex> make_skirt(const optics::Optic& optic, const glm::dvec3& cen
   return skirt;
 }
 
+GlVertexArray array_of(const GlBuffer& indices, const GlBuffer& vertices) {
+  GlVertexArray array = make_vertex_array(indices);
+  bind_attributes(array, 0, vertices, sizeof(Vertex), {{0, 3, 0}, {1, 3, sizeof(glm::vec3)}});
+  return array;
+}
+
 }  // namespace
 
-glm::dvec3 area_centroid(const optics::Optic& optic) {
+glm::dvec3 area_centroid(const tessellate::OpticArrays& mesh) {
   glm::dvec3 sum(0);
   double area = 0;
-  for (const auto& triangle : optic.mesh.triangles) {
-    const auto& a = optic.mesh.vertices[triangle.vertices[0]].position_mm;
-    const auto& b = optic.mesh.vertices[triangle.vertices[1]].position_mm;
-    const auto& c = optic.mesh.vertices[triangle.vertices[2]].position_mm;
+  for (const auto& triangle : mesh.triangles) {
+    const auto& a = mesh.vertices[triangle.vertices[0]].position_mm;
+    const auto& b = mesh.vertices[triangle.vertices[1]].position_mm;
+    const auto& c = mesh.vertices[triangle.vertices[2]].position_mm;
     const double twice_area = glm::length(glm::cross(b - a, c - a));
     sum += twice_area * (a + b + c) / 3.0;
     area += twice_area;
@@ -110,17 +116,17 @@ glm::dvec3 area_centroid(const optics::Optic& optic) {
   return area > 0 ? sum / area : glm::dvec3(0);
 }
 
-RasterOptic::RasterOptic(const optics::Optic& optic) : center_mm_(area_centroid(optic)) {
+RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh) : center_mm_(area_centroid(mesh)) {
   std::vector<Vertex> vertices;
-  vertices.reserve(optic.mesh.vertices.size());
-  for (const auto& v : optic.mesh.vertices)
+  vertices.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices)
     vertices.push_back({glm::vec3(v.position_mm - center_mm_), glm::vec3(v.normal)});
   std::vector<std::uint32_t> triangles;
-  triangles.reserve(3 * optic.mesh.triangles.size());
-  for (const auto& t : optic.mesh.triangles)
+  triangles.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
     triangles.insert(triangles.end(), t.vertices.begin(), t.vertices.end());
-  const std::vector<std::uint32_t> edges = unique_edges(optic);
-  const std::vector<Vertex> skirt = make_skirt(optic, center_mm_);
+  const std::vector<std::uint32_t> edges = unique_edges(mesh);
+  const std::vector<Vertex> skirt = make_skirt(mesh, center_mm_);
 
   vertices_ = make_static_buffer(std::as_bytes(std::span(vertices)));
   map_coordinates_ = make_dynamic_buffer(vertices.size() * sizeof(glm::vec3));
@@ -131,15 +137,14 @@ RasterOptic::RasterOptic(const optics::Optic& optic) : center_mm_(area_centroid(
   edge_indices_ = static_cast<GLsizei>(edges.size());
   skirt_vertex_count_ = static_cast<GLsizei>(skirt.size());
 
-  const auto array_with = [](const GlBuffer& indices, const GlBuffer& buffer) {
-    GlVertexArray array = make_vertex_array(indices);
-    bind_attributes(array, 0, buffer, sizeof(Vertex), {{0, 3, 0}, {1, 3, sizeof(glm::vec3)}});
-    return array;
-  };
-  surface_array_ = array_with(triangles_, vertices_);
+  surface_array_ = make_array();
   bind_attributes(surface_array_, 1, map_coordinates_, sizeof(glm::vec3), {{2, 3, 0}});
-  edge_array_ = array_with(edges_, vertices_);
-  skirt_array_ = array_with({}, skirt_vertices_);
+  edge_array_ = array_of(edges_, vertices_);
+  skirt_array_ = array_of({}, skirt_vertices_);
+}
+
+GlVertexArray RasterOptic::make_array() const {
+  return array_of(triangles_, vertices_);
 }
 
 void RasterOptic::set_map_coordinates(std::span<const glm::dvec3> coordinates) {
@@ -150,7 +155,11 @@ void RasterOptic::set_map_coordinates(std::span<const glm::dvec3> coordinates) {
 }
 
 void RasterOptic::draw_surface() const {
-  glBindVertexArray(surface_array_.id());
+  draw_triangles(surface_array_);
+}
+
+void RasterOptic::draw_triangles(const GlVertexArray& array) const {
+  glBindVertexArray(array.id());
   glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
 }
 

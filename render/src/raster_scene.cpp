@@ -37,6 +37,11 @@ GpuLight gpu_light(const Light& light, const glm::dvec3& origin_mm) {
   return {glm::vec4(glm::vec3(light.position_mm - origin_mm), 1), radiance};
 }
 
+std::optional<RasterOptic> back_of(const optics::Optic& optic) {
+  if (optic.kind == optics::OpticKind::mirror) return std::nullopt;
+  return RasterOptic(optic.back.mesh);
+}
+
 void set_vec3(GLint location, const glm::vec3& v) {
   glUniform3f(location, v.x, v.y, v.z);
 }
@@ -52,7 +57,10 @@ RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : sc
   upload_surroundings();
   upload_textures(textures);
   optics_.reserve(scene.optics.size());
-  for (const optics::Optic& optic : scene.optics) optics_.emplace_back(optic);
+  for (const optics::Optic& optic : scene.optics) {
+    optics_.emplace_back(optic.mesh);
+    backs_.push_back(back_of(optic));
+  }
   depth_program_ = make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_depth.frag.glsl"});
 }
 
@@ -123,7 +131,8 @@ void RasterScene::upload_textures(const SceneTextures& textures) {
 }
 
 void RasterScene::optic_changed(std::size_t index) {
-  optics_[index] = RasterOptic(scene_.optics[index]);
+  optics_[index] = RasterOptic(scene_.optics[index].mesh);
+  backs_[index] = back_of(scene_.optics[index]);
 }
 
 void RasterScene::begin_view(const RasterView& view, float level_bias) const {
@@ -196,7 +205,7 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
 void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   for (std::size_t i = 0; i < optics_.size(); ++i) {
-    if (pass.except == i) continue;
+    if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
     set_mesh_origin(view, optics_[i].center_mm());
     set_vec3(kAlbedo, scene_.optics[i].reflectance);
     set_vec3(kEmissive, glm::vec3(0));
@@ -212,7 +221,7 @@ void RasterScene::draw_sky(const RasterPass& pass) {
   glDepthFunc(GL_GREATER);
 }
 
-void RasterScene::draw_optic_depth(const RasterView& view, std::size_t index) {
+void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface) {
   begin_view(view, 0);
   const float nearest = 1;
   glClearBufferfv(GL_DEPTH, 0, &nearest);
@@ -220,8 +229,8 @@ void RasterScene::draw_optic_depth(const RasterView& view, std::size_t index) {
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
-  set_mesh_origin(view, optics_[index].center_mm());
-  optics_[index].draw_surface_with_skirt();
+  set_mesh_origin(view, surface.center_mm());
+  surface.draw_surface_with_skirt();
   glDisable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
 }

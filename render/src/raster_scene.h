@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "optics/lens_path.h"
 #include "render/scene.h"
 #include "render/src/gl_objects.h"
 #include "render/src/raster_optic.h"
@@ -21,7 +22,7 @@ struct RasterPass {
   bool geometry = false;  ///< also write world position and normal; the bound target must have them
   float level_bias = 0;   ///< added to the textures' level of detail (maps: see PvrrMap)
   const GlTexture* clip_depth = nullptr;  ///< depth of the optic in this view: what is nearer is not drawn
-  bool draw_optics = false;               ///< the optics as diffuse bodies of their reflectance ...
+  bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
   std::optional<std::size_t> except;      ///< ... but not this one
 };
 
@@ -35,15 +36,20 @@ class RasterScene {
 
   /// Uploads the mesh of optic `index` again.
   void optic_changed(std::size_t index);
+  /// A mirror, or the front of a lens.
   [[nodiscard]] RasterOptic& optic(std::size_t index) { return optics_[index]; }
   [[nodiscard]] const RasterOptic& optic(std::size_t index) const { return optics_[index]; }
+  [[nodiscard]] const RasterOptic& side(std::size_t lens, optics::LensSide side) const {
+    return side == optics::LensSide::front ? optics_[lens] : *backs_[lens];
+  }
 
   /// Clears the bound target and draws surroundings, optics as asked, and the sky.
   void draw(const RasterView& view, const RasterPass& pass);
 
-  /// Draws only the depth of an optic and of its continuation beyond the border, the farthest where there are
-  /// several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth alone.
-  void draw_optic_depth(const RasterView& view, std::size_t index);
+  /// Draws only the depth of an optical surface and of its continuation beyond the border, the farthest where
+  /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
+  /// alone.
+  void draw_optic_depth(const RasterView& view, const RasterOptic& surface);
 
   /// Makes `view` that of the following draws; draw() does so itself.
   void begin_view(const RasterView& view, float level_bias) const;
@@ -80,6 +86,7 @@ class RasterScene {
   GlTexture sky_;
   std::vector<Batch> batches_;
   std::vector<RasterOptic> optics_;
+  std::vector<std::optional<RasterOptic>> backs_;  ///< of the lenses
   std::map<unsigned, GlProgram> surface_programs_;
   std::map<bool, GlProgram> sky_programs_;
   GlProgram depth_program_;

@@ -27,7 +27,8 @@ cad_import::BoundingBox bounds_of(const Scene& scene) {
   for (const auto& mesh : scene.surroundings)
     for (const glm::vec3& p : mesh.positions) widen(box, glm::dvec3(p));
   for (const auto& optic : scene.optics)
-    for (const auto& vertex : optic.mesh.vertices) widen(box, vertex.position_mm);
+    for (const auto* mesh : {&optic.mesh, &optic.back.mesh})
+      for (const auto& vertex : mesh->vertices) widen(box, vertex.position_mm);
   return box;
 }
 
@@ -109,6 +110,8 @@ void Renderer::optic_changed(std::size_t index) {
   if (!impl_->gpu) return;
   const GlScope scope(*impl_->context);
   impl_->gpu->raster.optic_changed(index);
+  impl_->gpu->pvrr.optic_changed(index);
+  impl_->gpu->cubemap.optic_changed(index);
 }
 
 double Renderer::bare_packet_ms(const Camera& camera, const FrameOptions& options) const {

@@ -1,0 +1,22 @@
+// What all ways to draw a lens share: the sum over SAMPLES wavelengths, and the pixels that no light passes.
+// Needs raster_view.glsl, raster_shown.glsl.
+
+in vec3 v_relative;
+in vec4 v_exit;            // last point on the lens, relative to the view's origin; transmittance
+in vec4 v_shown[SAMPLES];
+
+layout(location = 3) uniform vec3 blocked_color;     // radiance where the path does not pass
+layout(location = 12) uniform mat3 weight[SAMPLES];  // of each wavelength's colour in the picture's
+
+bool passes(int k) { return gl_FrontFacing && v_shown[k].w > 0.0; }
+
+vec3 transmitted(int k, vec3 seen) { return weight[k] * (passes(k) ? v_exit.w * seen : blocked_color); }
+
+#ifdef GEOMETRY
+/// `shown`: by the reference wavelength, which is the first.
+void write_lens_geometry(vec4 shown) {
+  // Where nothing is seen through it, the lens counts as a body like any other.
+  out_position = passes(0) ? shown : vec4(v_relative + origin.xyz, 1.0);
+  out_detail = passes(0) ? vec4(v_exit.xyz + origin.xyz, optic_id + 1.0) : vec4(0.0);
+}
+#endif

@@ -1,0 +1,216 @@
+#include "render/src/pvrr_patch.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "optics/map_coordinates.h"
+#include "render/src/pvrr_plane_view.h"
+
+namespace catoptra::render {
+namespace {
+
+using optics::OpticKind;
+using optics::VertexHit;
+
+// As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
+constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
+constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
+
+void set_columns(GLint location, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::mat3 m{glm::vec3(a), glm::vec3(b), glm::vec3(c)};
+  glUniformMatrix3fv(location, 1, GL_FALSE, &m[0].x);
+}
+
+/// VirtualView::map_ray as two functions affine in (s, t).
+void set_map_rays(const optics::VirtualView& view) {
+  const glm::dvec3 corner = view.left * view.right + view.bottom * view.up;
+  const glm::dvec3 by_s = (view.right_side - view.left) * view.right,
+                   by_t = (view.top - view.bottom) * view.up;
+  const glm::dvec3 none(0);
+  if (view.projection == optics::MapProjection::perspective) {
+    set_columns(kMapRayOrigin, view.viewpoint_mm, none, none);
+    set_columns(kMapRayDirection, view.direction + corner, by_s, by_t);
+  } else {
+    set_columns(kMapRayOrigin, view.viewpoint_mm + corner, by_s, by_t);
+    set_columns(kMapRayDirection, view.direction, none, none);
+  }
+}
+
+bool same_view(const RasterView& a, const RasterView& b) {
+  return a.origin_mm == b.origin_mm && a.rotation == b.rotation && a.projection == b.projection &&
+         a.size == b.size;
+}
+
+/// The rays of all wavelengths one list after the other, without those that only continue others.
+std::vector<VertexHit> passing_rays(const LensRays& rays) {
+  std::vector<VertexHit> all;
+  for (const auto& of_sample : rays.hits) all.insert(all.end(), of_sample.begin(), of_sample.end());
+  for (VertexHit& hit : all) hit.faces_eye = openness(hit) > 0;
+  return all;
+}
+
+/// Closes vertices whose ray, continued beyond the border, has no place in the map.
+void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view) {
+  if (view.projection == optics::MapProjection::parallel) return;
+  for (VertexHit& hit : hits) {
+    if (!hit.faces_eye || openness(hit) > 0) continue;
+    const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
+    constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
+    hit.faces_eye = glm::dot(shown, view.direction) > kGrazing * glm::length(shown);
+  }
+}
+
+}  // namespace
+
+PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
+                     const cad_import::BoundingBox& bounds)
+    : scene_(scene),
+      optic_(scene.optics[optic]),
+      index_(optic),
+      raster_(raster),
+      rays_(rays),
+      bounds_(bounds) {}
+
+void PvrrPatch::optic_changed() {
+  tracer_.reset();
+  traced_from_.reset();
+}
+
+void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
+  traced_rays_ = 0;
+  const bool stays = options.reuse_static && traced_from_ == camera.origin_mm;
+  if (!stays) trace(camera.origin_mm);
+  if (!faces_eye_) {
+    map_.set_empty(options.geometry);
+    drawn_.reset();
+    return;
+  }
+  if (!stays || !fitted_for_ || !same_view(*fitted_for_, camera)) fit(camera, !stays);
+  map_.resize(map_size_, options.geometry);
+}
+
+void PvrrPatch::trace(const glm::dvec3& eye_mm) {
+  traced_from_ = eye_mm;
+  if (optic_.kind == OpticKind::lens) {
+    trace_lens(eye_mm);
+    return;
+  }
+  mirror_hits_ = optics::trace_vertices(optic_, eye_mm, rays_);
+  traced_rays_ = static_cast<std::size_t>(std::count_if(mirror_hits_.begin(), mirror_hits_.end(),
+                                                        [](const VertexHit& h) { return h.faces_eye; }));
+  faces_eye_ = traced_rays_ > 0;
+  if (faces_eye_) fitted_ = optics::make_virtual_view(optic_, mirror_hits_, bounds_);
+}
+
+void PvrrPatch::trace_lens(const glm::dvec3& eye_mm) {
+  if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
+  lens_rays_ = refract_eye_rays(optic_, *tracer_, eye_mm);
+  tbb::parallel_for(std::size_t(0), lens_rays_.hits.size(), [&](std::size_t k) {
+    lens_rays_.hits[k] = optics::find_scene_hits(std::move(lens_rays_.hits[k]), rays_);
+  });
+  traced_rays_ = lens_rays_.passed();
+  faces_eye_ = traced_rays_ > 0;
+  if (!faces_eye_) return;
+  fitted_ = optics::make_virtual_view(optic_, lens_rays_.entered, passing_rays(lens_rays_), bounds_);
+  for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
+}
+
+void PvrrPatch::fit(const RasterView& camera, bool traced) {
+  fitted_for_ = camera;
+  const bool was_on_grid = on_pixel_grid_;
+  const auto plane = optic_.kind == OpticKind::mirror ? plane_view(optic_, camera, fitted_, bounds_)
+                                                      : std::optional<PlaneView>();
+  on_pixel_grid_ = plane.has_value();
+  if (traced || plane || was_on_grid) {
+    view_ = plane ? plane->view : fitted_;
+    set_coordinates();
+    drawn_.reset();
+  }
+  if (plane) {
+    set_map_size({plane->texels, 1.0});
+    return;
+  }
+  std::vector<glm::dvec3> pixels;
+  pixels.reserve(coordinates_.size());
+  for (std::size_t i = 0; i < coordinates_.size(); ++i)
+    pixels.push_back(hits()[i].faces_eye ? camera.pixel(seen_mesh().vertices[i].position_mm) : glm::dvec3(0));
+  set_map_size(choose_map_size(seen_mesh(), pixels, coordinates_, view_, camera.size,
+                               scene_.settings.texels_per_pixel));
+}
+
+void PvrrPatch::set_map_size(const PvrrMapSize& size) {
+  if (size.texels != map_size_.texels || size.texels_per_pixel != map_size_.texels_per_pixel) drawn_.reset();
+  map_size_ = size;
+}
+
+void PvrrPatch::set_coordinates() {
+  if (optic_.kind == OpticKind::mirror) {
+    coordinates_ = optics::map_coordinates(optic_, mirror_hits_, view_);
+    raster_.optic(index_).set_map_coordinates(coordinates_);
+    return;
+  }
+  coordinates_ = optics::map_coordinates(optic_, lens_rays_.entered, lens_rays_.hits[0], view_);
+  std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
+  for (std::size_t k = 1; k < lens_rays_.hits.size(); ++k)
+    of_samples.push_back(optics::map_coordinates_like(coordinates_, lens_rays_.hits[k], view_));
+  lens_.set_shown(seen_surface(), lens_rays_, of_samples);
+}
+
+void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+  if (!faces_eye_) return;
+  const glm::dvec2 offset = map_offset(offset_px);
+  if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
+  const RasterOptic& last = optic_.kind == OpticKind::mirror
+                                ? raster_.optic(index_)
+                                : raster_.side(index_, optics::other_side(lens_rays_.entered));
+  map_.draw(raster_, index_, last, view_, offset, geometry);
+  drawn_ = {offset, geometry};
+  if (!overlay) return;
+  map_.target().bind(false);
+  overlay->draw_in_scene(map_.view(), map_.clip_depth());
+  drawn_.reset();
+}
+
+void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
+  const RasterTarget& target = map_.target();
+  const glm::dvec2 shift = -map_offset(offset_px) / glm::dvec2(target.size());
+  glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
+  glBindTextureUnit(kMapColorUnit, target.color().id());
+  if (geometry || optic_.kind == OpticKind::lens) set_map_rays(view_);
+  if (!geometry) return;
+  glBindTextureUnit(kMapPositionUnit, target.position().id());
+  glBindTextureUnit(kMapDetailUnit, target.detail().id());
+}
+
+std::span<const VertexHit> PvrrPatch::hits() const {
+  return optic_.kind == OpticKind::mirror ? mirror_hits_ : lens_rays_.hits[0];
+}
+
+const RasterOptic& PvrrPatch::seen_surface() const {
+  return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_rays_.entered);
+}
+
+const tessellate::OpticArrays& PvrrPatch::seen_mesh() const {
+  return optic_.kind == OpticKind::mirror ? optic_.mesh : *optics::side_of(optic_, lens_rays_.entered).mesh;
+}
+
+glm::dvec2 PvrrPatch::map_offset(glm::dvec2 offset_px) const {
+  // In general the map's samples move within its texels as the picture's do within pixels, but not in step
+  // with them.
+  return on_pixel_grid_ ? plane_view_offset(offset_px) : glm::dvec2(offset_px.y, offset_px.x);
+}
+
+OpticStats PvrrPatch::statistics() const {
+  OpticStats stats{optic_.name,
+                   optic_.kind == OpticKind::mirror ? "mirror" : "lens",
+                   seen_mesh().vertices.size(),
+                   traced_rays_,
+                   {}};
+  if (faces_eye_)
+    stats.patches.push_back({view_.viewpoint_mm, view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
+  return stats;
+}
+
+}  // namespace catoptra::render

@@ -1,0 +1,90 @@
+// One optic in mode pvrr: vertex rays, virtual viewpoint and map, kept while nothing changes them (paper 5).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "optics/lens_path.h"
+#include "optics/vertex_hits.h"
+#include "optics/virtual_view.h"
+#include "render/frame.h"
+#include "render/src/lens_rays.h"
+#include "render/src/overlay_vertices.h"
+#include "render/src/pvrr_map.h"
+#include "render/src/raster_lens.h"
+#include "render/src/raster_scene.h"
+
+namespace catoptra::render {
+
+class PvrrPatch {
+ public:
+  /// Keeps the references; `bounds`: of everything in the scene.
+  PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
+            const cad_import::BoundingBox& bounds);
+
+  /// The optic itself has changed or moved; or something else that its map shows.
+  void optic_changed();
+  void map_changed() { drawn_.reset(); }
+
+  /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices,
+  /// viewpoint, map coordinates, and the size of the map. `camera`: without sample offset.
+  void update(const RasterView& camera, const FrameOptions& options);
+
+  /// Pass 1, unless the map is there already. An `overlay` (or null) is drawn into it.
+  void draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+
+  /// For the program in use: the map of pass 2, with the map rays that geometry and lenses need.
+  void set_map(glm::dvec2 offset_px, bool geometry) const;
+
+  [[nodiscard]] bool faces_eye() const { return faces_eye_; }
+  /// Of the mesh drawn; of a lens at the reference wavelength.
+  [[nodiscard]] std::span<const optics::VertexHit> hits() const;
+  [[nodiscard]] const optics::VirtualView& view() const { return view_; }
+  [[nodiscard]] const PvrrMap& map() const { return map_; }
+  /// The mesh that the eye sees: a mirror's, or that of the side at which a lens is entered.
+  [[nodiscard]] const RasterOptic& seen_surface() const;
+  [[nodiscard]] const RasterLens& lens() const { return lens_; }
+  /// What the last update() has cost and found.
+  [[nodiscard]] OpticStats statistics() const;
+
+ private:
+  void trace(const glm::dvec3& eye_mm);
+  void trace_lens(const glm::dvec3& eye_mm);
+  void fit(const RasterView& camera, bool traced);
+  void set_coordinates();
+  void set_map_size(const PvrrMapSize& size);
+  [[nodiscard]] const tessellate::OpticArrays& seen_mesh() const;
+  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
+
+  const Scene& scene_;
+  const optics::Optic& optic_;
+  std::size_t index_;
+  RasterScene& raster_;
+  const optics::RayScene& rays_;
+  cad_import::BoundingBox bounds_;
+
+  std::optional<glm::dvec3> traced_from_;  ///< the eye that what follows belongs to
+  std::vector<optics::VertexHit> mirror_hits_;
+  std::unique_ptr<optics::LensTracer> tracer_;
+  LensRays lens_rays_;
+  optics::VirtualView fitted_;
+  bool faces_eye_ = false;
+
+  std::optional<RasterView> fitted_for_;  ///< the camera that what follows belongs to
+  optics::VirtualView view_;
+  bool on_pixel_grid_ = false;           ///< the view is that of plane_view()
+  std::vector<glm::dvec3> coordinates_;  ///< of a lens at the reference wavelength
+  PvrrMapSize map_size_;
+  RasterLens lens_;
+
+  struct Drawn {
+    glm::dvec2 offset_px;
+    bool geometry;
+  };
+  std::optional<Drawn> drawn_;  ///< what the map holds
+  PvrrMap map_;
+  std::size_t traced_rays_ = 0;
+};
+
+}  // namespace catoptra::render
