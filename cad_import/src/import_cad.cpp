@@ -8,6 +8,7 @@
 #include "cad_import/src/kernel_document.h"
 #include "cad_import/src/kernel_session.h"
 #include "cad_import/src/model_builder.h"
+#include "cad_import/src/sew_faces.h"
 #include "cad_import/src/shape_checks.h"
 
 namespace catoptra::cad_import {
@@ -55,6 +56,7 @@ CadModel import_with_kernel(const std::filesystem::path& file, const ImportOptio
   const KernelSession session;
   const Handle(ImportProgress) progress = new ImportProgress(options, name);
   KernelDocument document = read(file, sniff_format(file), *progress);
+  sew_loose_faces(document);
   const double factor = options.scale * (options.unit ? unit_mm / document.unit_mm.value_or(1) : 1);
   const glm::dmat4 placement =
       options.placement * glm::dmat4(glm::dvec4(factor, 0, 0, 0), glm::dvec4(0, factor, 0, 0),
