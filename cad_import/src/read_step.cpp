@@ -12,6 +12,8 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <algorithm>
+#include <cctype>
 
 #include "cad_import/src/document_tree.h"
 #include "cad_import/src/file_checks.h"
@@ -62,6 +64,14 @@ void read_entity_names(const Handle(XSControl_WorkSession) & session, KernelDocu
   }
 }
 
+// Systems also note the native document that a part was exported from, though its faces are in this file; the
+// kernel follows references to STEP files only.
+bool is_step_reference(const std::string& name) {
+  std::string suffix = std::filesystem::path(name).extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return suffix == ".step" || suffix == ".stp" || suffix == ".p21";
+}
+
 void check_external_files(const STEPCAFControl_Reader& reader, const std::string& file,
                           KernelDocument& document) {
   std::string names;
@@ -69,9 +79,10 @@ void check_external_files(const STEPCAFControl_Reader& reader, const std::string
   for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator it(
            reader.ExternFiles());
        it.More(); it.Next()) {
-    if (it.Value()->GetTransferStatus()) continue;
+    const std::string other = it.Key().ToCString();
+    if (it.Value()->GetTransferStatus() || (!document.bodies.empty() && !is_step_reference(other))) continue;
     ++count;
-    if (count <= 3) names += (count > 1 ? ", " : "") + std::string(it.Key().ToCString());
+    if (count <= 3) names += (count > 1 ? ", " : "") + other;
   }
   if (count == 0) return;
   const std::string reason =

@@ -1,9 +1,13 @@
 // Units, names, colours, assemblies, topology and identity of imported CAD files.
 #include <gtest/gtest.h>
+#include <BRepBuilderAPI_Copy.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <BinTools.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <gp_Ax1.hxx>
 #include <gp_Trsf.hxx>
 
@@ -12,6 +16,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <numbers>
+#include <regex>
 #include <set>
 #include <thread>
 
@@ -295,6 +300,71 @@ TEST(ImportCad, IgesInInches) {
   EXPECT_EQ(model.unit, "in");
   EXPECT_EQ(model.faces.size(), 6u);
   expect_box(model.bounds, {0, 0, 0}, {10, 20, 30}, 1e-6);
+}
+
+// How often each edge of the model is used, for faces whose neighbours must share their borders.
+std::map<int, int> uses_of_edges(const CadModel& model) {
+  std::map<int, int> uses;
+  for (const Face& face : model.faces)
+    for (const TrimLoop& loop : face.loops)
+      for (const EdgeUse& use : loop.edges) ++uses[use.edge];
+  return uses;
+}
+
+void expect_closed_box(const CadModel& model) {
+  ASSERT_EQ(model.faces.size(), 6u);
+  const std::map<int, int> uses = uses_of_edges(model);
+  EXPECT_EQ(uses.size(), 12u);
+  for (const auto& [edge, count] : uses) EXPECT_EQ(count, 2) << "edge " << edge;
+  const glm::dvec3 centre = 0.5 * (model.bounds.min + model.bounds.max);
+  for (const Face& face : model.faces) {
+    const ParameterDomain d = face.surface->domain();
+    const double u = 0.5 * (d.u_min + d.u_max), v = 0.5 * (d.v_min + d.v_max);
+    EXPECT_GT(glm::dot(face.surface->unit_normal(u, v), face.surface->point(u, v) - centre), 0) << face.index;
+  }
+}
+
+TEST(ImportCad, FacesThatIgesListsOneByOneShareTheirBorders) {
+  const ScratchFolder folder;
+  test::CadDocument document;
+  document.add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "Box");
+  document.write_iges(folder / "box.igs");
+  expect_closed_box(import_cad(folder / "box.igs"));
+}
+
+TEST(ImportCad, LooseFacesFaceTheSideOfTheirMajority) {
+  const ScratchFolder folder;
+  TopoDS_Compound loose;
+  BRep_Builder builder;
+  builder.MakeCompound(loose);
+  bool turned = false;  // the first face looks inwards
+  for (TopExp_Explorer it(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), TopAbs_FACE); it.More(); it.Next()) {
+    const TopoDS_Shape face = BRepBuilderAPI_Copy(it.Current()).Shape();  // with edges of its own
+    builder.Add(loose, turned ? face : face.Reversed());
+    turned = true;
+  }
+  BRepTools::Write(loose, (folder / "loose.brep").string().c_str());
+  expect_closed_box(import_cad(folder / "loose.brep"));
+}
+
+// A spectacle frame warned of missing parts because it names the CATIA documents that it was made from.
+TEST(ImportCad, NativeDocumentsOfPartsThatAreInTheFileAreNoMissingFiles) {
+  const ScratchFolder folder;
+  test::write_box(folder / "box.step");
+  std::string text = test::read_text(folder / "box.step");
+  text = std::regex_replace(text, std::regex(R"(PRODUCT_DEFINITION\(([^;]*)\);)"),
+                            "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS($1,(#90002));"
+                            "#90001=DOCUMENT_TYPE('');#90002=DOCUMENT('4','box.NAME','a document',#90001);",
+                            std::regex_constants::format_first_only);
+  const auto named = [&](const char* suffix) {
+    std::string renamed = text;
+    renamed.replace(renamed.find("box.NAME"), 8, std::string("box.") + suffix);
+    return renamed;
+  };
+  test::write_text(folder / "native.step", named("CATPart"));
+  EXPECT_FALSE(has_warning(import_cad(folder / "native.step").warnings, "other file"));
+  test::write_text(folder / "missing.step", named("stp"));
+  EXPECT_TRUE(has_warning(import_cad(folder / "missing.step").warnings, "other file"));
 }
 
 TEST(ImportCad, ManyThreadsMayImportAtOnce) {
