@@ -2,6 +2,7 @@
 // one at a time without it, and several at once, all in one run.
 //   bench_lens_paths [rays in thousands, default 1000]
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "optics/lens_path_batch.h"
+#include "optics/map_coordinates.h"
 #include "tests/support/bspline_lens.h"
 
 namespace {
@@ -75,9 +77,41 @@ void bench(int poles, std::size_t count) {
   if (passed == 0) std::puts("no ray passed");
 }
 
+// PVRR's share: the vertices of one side with their differentials (on all cores), and the two steps that
+// follow.
+void bench_vertices(int per_side) {
+  const optics::Optic lens = test::bspline_lens({.per_side = per_side});
+  const optics::LensTracer tracer(lens);
+  const glm::dvec3 eye(0, 0, -63);
+  std::vector<optics::VertexHit> hits;
+  const auto milliseconds = [](const std::function<void()>& run) {  // of the wall clock, best of twenty
+    double best = 1e300;
+    for (int i = 0; i < 20; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      run();
+      best = std::min(
+          best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return best;
+  };
+  const double refract = milliseconds(
+      [&] { hits = optics::refract_vertices(lens, tracer, optics::LensSide::back, optics::kLineD_nm, eye); });
+  optics::VirtualView view;
+  const double fit = milliseconds([&] {
+    view =
+        optics::make_virtual_view(lens, optics::LensSide::back, hits, {{-1e4, -1e4, -100}, {1e4, 1e4, 6e3}});
+  });
+  std::size_t count = 0;
+  const double coordinates = milliseconds(
+      [&] { count += optics::map_coordinates(lens, optics::LensSide::back, hits, view).size(); });
+  std::printf("%d vertices, ms: rays %.2f, viewpoint and volume %.3f, coordinates %.2f (%zu)\n",
+              per_side * per_side, refract, fit, coordinates, count);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::size_t count = std::size_t(argc > 1 ? std::max(1, std::atoi(argv[1])) : 1000) * 1000;
   for (const int poles : {8, 16, 40}) bench(poles, count);
+  for (const int per_side : {23, 32}) bench_vertices(per_side);
 }
