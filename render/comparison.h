@@ -17,6 +17,9 @@ struct ErrorQuantiles {
 struct OpticError {
   std::size_t pixels = 0;          ///< compared
   std::size_t outline_pixels = 0;  ///< shown by one picture only: left out
+  /// Left out because both pictures show what touches the optic there (the rim around a glass): so near to
+  /// it that the coordinates, which frames keep as floats, do not tell the direction to an arcminute.
+  std::size_t touching_pixels = 0;
   ErrorQuantiles arcmin;  ///< angle at the last surface point between the exact direction and what is shown
   /// The same in pixels, through the local derivative of the exact ray by pixel. Left out on caustics, where
   /// it is singular.

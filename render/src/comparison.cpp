@@ -37,6 +37,23 @@ void check_geometry(const Frame& frame, const char* which) {
               "render it with FrameOptions::geometry");
 }
 
+/// Whether `frame` shows something at pixel `i` that lies so near to the optic that rounding alone turns the
+/// direction to it by an arcminute: two points, each coordinate off by half a unit in the last place.
+bool touches(const Frame& reference, const Frame& frame, std::size_t i) {
+  const glm::vec4& shown = frame.position[i];
+  if (shown.w == 0) return false;
+  const glm::dvec3 surface(reference.surface[i]), point(shown);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(surface[k]), std::abs(point[k])});
+  const double rounding_mm = std::sqrt(3.0) * largest * std::numeric_limits<float>::epsilon();
+  return glm::distance(surface, point) < rounding_mm * kArcminPerRad;
+}
+
+/// Both pictures show what touches the optic: see OpticError::touching_pixels.
+bool both_touch(const Frame& reference, const Frame& frame, std::size_t i) {
+  return touches(reference, reference, i) && touches(reference, frame, i);
+}
+
 /// Unit direction from the exact last surface point to what `frame` shows at pixel `i`; nullopt where it
 /// shows nothing there.
 std::optional<glm::dvec3> shown_direction(const Frame& reference, const Frame& frame, std::size_t i) {
@@ -121,6 +138,10 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
       if (exact != shown && id >= 0 && std::size_t(id) < result.optics.size())
         ++result.optics[std::size_t(id)].outline_pixels;
     if (exact != shown || exact < 0 || std::size_t(exact) >= result.optics.size()) continue;
+    if (both_touch(reference, frame, i)) {
+      ++result.optics[std::size_t(exact)].touching_pixels;
+      continue;
+    }
     const auto direction = shown_direction(reference, frame, i);
     if (!direction) continue;
     arcmin[std::size_t(exact)].push_back(kArcminPerRad *
@@ -144,6 +165,7 @@ std::vector<float> error_map_arcmin(const Frame& reference, const Frame& frame) 
   std::vector<float> map(reference.color.size(), -1);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (reference.optic_id[i] < 0 || reference.optic_id[i] != frame.optic_id[i]) continue;
+    if (both_touch(reference, frame, i)) continue;
     if (const auto direction = shown_direction(reference, frame, i))
       map[i] = float(kArcminPerRad * angle(*direction, glm::dvec3(reference.direction[i])));
   }

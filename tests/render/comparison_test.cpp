@@ -44,6 +44,31 @@ TEST(Comparison, TheReferenceAgainstItselfIsExact) {
   EXPECT_EQ(c.image.flip_mean, 0);
 }
 
+// In concave glasses the rim stands some um before the outermost pixels' surface points: both pictures show
+// the same place there, and what rounding of its coordinates makes of the direction is no error of either.
+TEST(Comparison, WhatTouchesTheOpticInBothPicturesIsCountedApart) {
+  const auto& t = traced(1200);
+  render::Frame reference = t.render(kWidth, kHeight);
+  render::Frame frame = reference;
+  const std::size_t pixels = render::compare(reference, frame, t.scene).optics[0].pixels;
+  std::size_t first = 0;
+  while (reference.optic_id[first] < 0) ++first;
+  const auto touch = [&](render::Frame& f, float turned) {
+    f.position[first] = glm::vec4(reference.surface[first] + 2e-6f * reference.direction[first], 1);
+    f.position[first].x += turned;
+  };
+  touch(frame, 1e-6f);
+  EXPECT_EQ(render::compare(reference, frame, t.scene).optics[0].touching_pixels, 0u)
+      << "in one picture only";
+  EXPECT_GT(render::compare(reference, frame, t.scene).optics[0].arcmin.max, 1000);
+  touch(reference, 0);
+  const render::OpticError error = render::compare(reference, frame, t.scene).optics[0];
+  EXPECT_EQ(error.touching_pixels, 1u);
+  EXPECT_EQ(error.pixels + error.touching_pixels, pixels);
+  EXPECT_LT(error.arcmin.max, 0.01);
+  EXPECT_EQ(render::error_map_arcmin(reference, frame)[first], -1);
+}
+
 TEST(Comparison, ATurnedDirectionIsItsAngle) {
   const auto& t = traced(1200);
   const render::Frame reference = t.render(kWidth, kHeight);
