@@ -139,8 +139,8 @@ inline Point evaluate_spans(const Surface& s, const Real& u, const Real& v) {
     if (lane(offset, i) != first) second = lane(offset, i);
   const Mask in_first = offset == first;
   if (all(in_first | (offset == second)))
-    return evaluate_block(s, TwoSpans{s.coefficients + first, s.coefficients + second, in_first}, x, y, rate_u,
-                          rate_v);
+    return evaluate_block(s, TwoSpans{s.coefficients + first, s.coefficients + second, in_first}, x, y,
+                          rate_u, rate_v);
   return evaluate_block(s, Gather{s.coefficients, offset}, x, y, rate_u, rate_v);
 }
 

@@ -8,7 +8,7 @@
 namespace catoptra::optics {
 namespace {
 
-/// Both Fresnel amplitudes for a transmitted cosine that may be complex (absorbing medium).
+/// Squares of both Fresnel amplitudes; index and cosine in an absorbing medium are complex.
 FresnelReflectance reflectance(double cos_i, double n_from, std::complex<double> n_to) {
   const std::complex<double> sin_t = n_from / n_to * std::sqrt(std::max(0.0, 1 - cos_i * cos_i));
   const std::complex<double> cos_t = std::sqrt(1.0 - sin_t * sin_t);
@@ -34,7 +34,10 @@ std::optional<double> critical_angle(double n_from, double n_to) {
 FresnelReflectance fresnel_dielectric(double cos_theta_i, double n_from, double n_to) {
   const double sin_t = n_from / n_to * std::sqrt(std::max(0.0, 1 - cos_theta_i * cos_theta_i));
   if (sin_t >= 1) return {1, 1, 1};
-  return reflectance(cos_theta_i, n_from, n_to);
+  const double cos_t = std::sqrt(1 - sin_t * sin_t);
+  const double s = (n_from * cos_theta_i - n_to * cos_t) / (n_from * cos_theta_i + n_to * cos_t);
+  const double p = (n_to * cos_theta_i - n_from * cos_t) / (n_to * cos_theta_i + n_from * cos_t);
+  return {s * s, p * p, 0.5 * (s * s + p * p)};
 }
 
 FresnelReflectance fresnel_conductor(double cos_theta_i, double n_from, double n_to, double k_to) {

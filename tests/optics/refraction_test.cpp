@@ -74,5 +74,15 @@ TEST(FresnelConductor, NormalIncidence) {
   EXPECT_NEAR(expected, 0.915, 1e-3);
 }
 
+// A metal that absorbs nothing is a dielectric: two formulas that must agree.
+TEST(FresnelConductor, WithoutAbsorptionIsADielectric) {
+  for (double cos_i = 0.02; cos_i <= 1; cos_i += 0.07) {
+    const auto metal = fresnel_conductor(cos_i, 1, 1.6, 0), glass = fresnel_dielectric(cos_i, 1, 1.6);
+    EXPECT_NEAR(metal.s, glass.s, 1e-14);
+    EXPECT_NEAR(metal.p, glass.p, 1e-14);
+    EXPECT_NEAR(metal.unpolarised, glass.unpolarised, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace catoptra::optics
