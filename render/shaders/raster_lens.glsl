@@ -3,12 +3,17 @@
 
 in vec3 v_relative;
 in vec4 v_exit;            // last point on the lens, relative to the view's origin; transmittance
+in vec2 v_mask;
 in vec4 v_shown[SAMPLES];
+
+layout(binding = 5) uniform sampler2D exit_mask;  // above 1/2 on the exit surface, below beside it
 
 layout(location = 3) uniform vec3 blocked_color;     // radiance where the path does not pass
 layout(location = 12) uniform mat3 weight[SAMPLES];  // of each wavelength's colour in the picture's
 
-bool passes(int k) { return gl_FrontFacing && v_shown[k].w > 0.0; }
+bool passes(int k) {
+  return gl_FrontFacing && v_shown[k].w > 0.0 && textureLod(exit_mask, v_mask, 0.0).r > 0.5;
+}
 
 vec3 transmitted(int k, vec3 seen) { return weight[k] * (passes(k) ? v_exit.w * seen : blocked_color); }
 

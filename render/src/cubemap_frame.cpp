@@ -119,7 +119,8 @@ void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool 
     auto& some = directions.emplace_back();
     for (const optics::VertexHit& hit : of_sample) some.push_back(hit.direction);
   }
-  lens.raster.set_shown(raster_.side(optic, rays.entered), rays, directions);
+  lens.raster.set_shown(raster_.side(optic, rays.entered),
+                        raster_.exit_mask(optic, optics::other_side(rays.entered)), rays, directions);
 }
 
 glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {

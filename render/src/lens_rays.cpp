@@ -9,45 +9,92 @@ namespace {
 using optics::LensPathEnd;
 using optics::VertexHit;
 
-bool passes(const VertexHit& hit) {
-  return hit.faces_eye && hit.end == LensPathEnd::passed;
+// Corner vertices may have none but continued neighbours.
+constexpr int kContinuedRings = 2;
+
+/// Calls `edge(from, to)` for both directions of every triangle's edges.
+template <typename Edge>
+void for_each_edge(const tessellate::OpticArrays& mesh, const Edge& edge) {
+  for (const auto& triangle : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle.vertices[k], b = triangle.vertices[(k + 1) % 3];
+      edge(a, b);
+      edge(b, a);
+    }
 }
 
-/// Gives vertices beside passing ones the mean of what the rays of those ask for by their differentials.
+/// Gives vertices beside those with a ray the mean of what these rays' differentials ask for.
 void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<VertexHit>& hits) {
-  struct Sum {
-    VertexHit hit;
-    int count = 0;
-  };
-  std::vector<Sum> sums(hits.size());
-  for (const auto& triangle : mesh.triangles)
-    for (int k = 0; k < 6; ++k) {
-      const std::uint32_t from = triangle.vertices[k % 3], to = triangle.vertices[(k + 1 + k / 3) % 3];
-      // Where the surface looks away from the eye it cannot be continued.
-      if (!passes(hits[from]) || passes(hits[to]) || hits[to].end == LensPathEnd::missed) continue;
-      const VertexHit& known = hits[from];
-      const glm::dvec3 step = mesh.vertices[to].position_mm - mesh.vertices[from].position_mm;
-      VertexHit& sum = sums[to].hit;
-      sum.surface_point_mm += known.surface_point_mm + known.differential.point * step;
-      sum.direction += known.direction + known.differential.direction * step;
-      sum.differential.point += known.differential.point;
-      sum.differential.direction += known.differential.direction;
-      sum.transmittance =
-          ++sums[to].count == 1 ? known.transmittance : std::max(sum.transmittance, known.transmittance);
-    }
+  std::vector<VertexHit> sums(hits.size());
+  std::vector<int> counts(hits.size(), 0);
+  for_each_edge(mesh, [&](std::uint32_t from, std::uint32_t to) {
+    // Where the surface looks away from the eye it cannot be continued.
+    if (!hits[from].faces_eye || hits[to].faces_eye || hits[to].end == LensPathEnd::missed) return;
+    const VertexHit& known = hits[from];
+    const glm::dvec3 step = mesh.vertices[to].position_mm - mesh.vertices[from].position_mm;
+    VertexHit& sum = sums[to];
+    sum.surface_point_mm += known.surface_point_mm + known.differential.point * step;
+    sum.direction += known.direction + known.differential.direction * step;
+    sum.differential.point += known.differential.point;
+    sum.differential.direction += known.differential.direction;
+    sum.transmittance =
+        counts[to]++ == 0 ? known.transmittance : std::max(sum.transmittance, known.transmittance);
+  });
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const auto& [sum, count] = sums[i];
-    if (count == 0 || !(glm::length(sum.direction) > 0)) continue;
+    const double count = counts[i];
+    if (counts[i] == 0 || !(glm::length(sums[i].direction) > 0)) continue;
     VertexHit& hit = hits[i];
-    hit.surface_point_mm = sum.surface_point_mm / double(count);
-    hit.direction = glm::normalize(sum.direction);
-    hit.differential = {sum.differential.point / double(count), sum.differential.direction / double(count)};
-    hit.transmittance = sum.transmittance;
+    hit.surface_point_mm = sums[i].surface_point_mm / count;
+    hit.direction = glm::normalize(sums[i].direction);
+    hit.differential = {sums[i].differential.point / count, sums[i].differential.direction / count};
+    hit.transmittance = sums[i].transmittance;
     hit.faces_eye = true;
   }
 }
 
+/// The share of the way from a passing vertex to one that does not, up to which light passes, rounded up to
+/// the next 1/16.
+double passing_share(const optics::LensTracer& tracer, optics::LensSide entered,
+                     const optics::LensIndices& indices, const glm::dvec3& eye_mm, const glm::dvec3& from_mm,
+                     const glm::dvec3& to_mm) {
+  double passed = 0, blocked = 1;
+  while (blocked - passed > 1.0 / 16) {
+    const double middle = 0.5 * (passed + blocked);
+    const glm::dvec3 towards = glm::normalize(from_mm + middle * (to_mm - from_mm) - eye_mm);
+    (tracer.trace({eye_mm, towards}, entered, indices).end == LensPathEnd::passed ? passed : blocked) =
+        middle;
+  }
+  return blocked;
+}
+
+/// The rays that a map has to hold: for vertices without one of their own, that where light begins to pass.
+std::vector<VertexHit> rays_to_border(const optics::Optic& lens, const optics::LensTracer& tracer,
+                                      const LensRays& rays, const glm::dvec3& eye_mm) {
+  const auto& mesh = *optics::side_of(lens, rays.entered).mesh;
+  const auto indices = optics::lens_indices(lens, rays.samples[0].wavelength_nm);
+  const std::vector<VertexHit>& hits = rays.hits[0];
+  std::vector<VertexHit> border = hits;
+  for (VertexHit& hit : border) hit.faces_eye = passes(hit);
+  std::vector<double> shares(hits.size(), 0.0);
+  for_each_edge(mesh, [&](std::uint32_t from, std::uint32_t to) {
+    if (!passes(hits[from]) || passes(hits[to]) || !hits[to].faces_eye || openness(hits[to]) < 0) return;
+    const double share = passing_share(tracer, rays.entered, indices, eye_mm, mesh.vertices[from].position_mm,
+                                       mesh.vertices[to].position_mm);
+    if (!(share > shares[to])) return;
+    shares[to] = share;
+    const VertexHit &a = hits[from], &b = hits[to];
+    border[to].surface_point_mm = a.surface_point_mm + share * (b.surface_point_mm - a.surface_point_mm);
+    border[to].direction = glm::normalize(a.direction + share * (b.direction - a.direction));
+    border[to].faces_eye = true;
+  });
+  return border;
+}
+
 }  // namespace
+
+bool passes(const VertexHit& hit) {
+  return hit.faces_eye && hit.end == LensPathEnd::passed;
+}
 
 std::size_t LensRays::passed() const {
   std::size_t count = 0;
@@ -58,7 +105,8 @@ std::size_t LensRays::passed() const {
 
 float openness(const VertexHit& hit) {
   constexpr float kClosed = -1e6f;
-  return passes(hit) ? 1.0f : hit.faces_eye ? -1.0f : kClosed;
+  if (!hit.faces_eye) return kClosed;
+  return hit.end == LensPathEnd::total_reflection ? -1.0f : 1.0f;
 }
 
 std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
@@ -69,12 +117,14 @@ std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
 
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm) {
-  LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}};
+  LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}, {}};
   for (const optics::SpectralSample& sample : rays.samples) {
     auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, eye_mm);
-    continue_beyond_border(*optics::side_of(lens, rays.entered).mesh, hits);
+    for (int ring = 0; ring < kContinuedRings; ++ring)
+      continue_beyond_border(*optics::side_of(lens, rays.entered).mesh, hits);
     rays.hits.push_back(std::move(hits));
   }
+  rays.border = rays_to_border(lens, tracer, rays, eye_mm);
   return rays;
 }
 

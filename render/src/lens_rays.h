@@ -11,19 +11,24 @@
 namespace catoptra::render {
 
 /// Per sample and vertex of the side entered. Beside a vertex whose light passes, one whose light does not
-/// has the ray that it would have if the surfaces went on (`faces_eye` is set, `end` tells the reason), so
-/// that the border of what is seen lies between the two.
+/// has the ray that it would have if the surfaces went on (`faces_eye` is set, `end` tells the reason), since
+/// the border of what is seen lies between the two.
 struct LensRays {
   optics::LensSide entered = optics::LensSide::front;
   std::vector<optics::SpectralSample> samples;  ///< the reference wavelength first
   std::vector<std::vector<optics::VertexHit>> hits;
+  /// Per vertex at the reference wavelength, only with what light passes (`faces_eye`); beside those the ray
+  /// at the border: together the rays that a map has to hold.
+  std::vector<optics::VertexHit> border;
 
   /// Number of rays that pass, at all wavelengths.
   [[nodiscard]] std::size_t passed() const;
 };
 
-/// Above 0 where the path of a vertex passes; where it does not, the border lies half-way to a vertex of
-/// value 1 if the ray is continued, and at that vertex if not.
+[[nodiscard]] bool passes(const optics::VertexHit& hit);
+
+/// 1 where light passes, or would if the exit surface went on: LensMask tells where that ends. Negative where
+/// it does not: total reflection begins half-way to a vertex of value 1, all else at that vertex.
 [[nodiscard]] float openness(const optics::VertexHit& hit);
 
 /// spectral_samples() with the middle one, to which geometry belongs, first.

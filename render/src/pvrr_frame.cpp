@@ -94,7 +94,7 @@ void PvrrFrame::set_overlay(const FrameOptions& options) {
   for (const PvrrPatch& patch : patches_) {
     if (!patch.faces_eye()) continue;
     for (const optics::VertexHit& hit : patch.hits()) {
-      if (!(openness(hit) > 0)) continue;
+      if (!passes(hit)) continue;
       if (options.overlay_vertices && hit.scene_hit)
         balls.push_back({hit.hit_point_mm,
                          length_in_map(patch.view(), patch.map().size(), hit.hit_point_mm, kBallRadiusPx)});

@@ -43,11 +43,19 @@ bool same_view(const RasterView& a, const RasterView& b) {
          a.size == b.size;
 }
 
-/// The rays of all wavelengths one list after the other, without those that only continue others.
-std::vector<VertexHit> passing_rays(const LensRays& rays) {
-  std::vector<VertexHit> all;
-  for (const auto& of_sample : rays.hits) all.insert(all.end(), of_sample.begin(), of_sample.end());
-  for (VertexHit& hit : all) hit.faces_eye = openness(hit) > 0;
+/// The rays of all wavelengths that a map has to hold, one list after the other. The borders of the others
+/// are those of the reference wavelength within the view's margin.
+std::vector<VertexHit> rays_in_map(const LensRays& rays) {
+  std::vector<VertexHit> all = rays.border;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].scene_hit = rays.hits[0][i].scene_hit;
+    all[i].hit_point_mm = rays.hits[0][i].hit_point_mm;
+  }
+  for (std::size_t k = 1; k < rays.hits.size(); ++k)
+    for (const VertexHit& hit : rays.hits[k]) {
+      all.push_back(hit);
+      all.back().faces_eye = passes(hit);
+    }
   return all;
 }
 
@@ -55,7 +63,7 @@ std::vector<VertexHit> passing_rays(const LensRays& rays) {
 void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view) {
   if (view.projection == optics::MapProjection::parallel) return;
   for (VertexHit& hit : hits) {
-    if (!hit.faces_eye || openness(hit) > 0) continue;
+    if (!hit.faces_eye || passes(hit)) continue;
     const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
     constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
     hit.faces_eye = glm::dot(shown, view.direction) > kGrazing * glm::length(shown);
@@ -113,7 +121,7 @@ void PvrrPatch::trace_lens(const glm::dvec3& eye_mm) {
   traced_rays_ = lens_rays_.passed();
   faces_eye_ = traced_rays_ > 0;
   if (!faces_eye_) return;
-  fitted_ = optics::make_virtual_view(optic_, lens_rays_.entered, passing_rays(lens_rays_), bounds_);
+  fitted_ = optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds_);
   for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
 }
 
@@ -155,7 +163,8 @@ void PvrrPatch::set_coordinates() {
   std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
   for (std::size_t k = 1; k < lens_rays_.hits.size(); ++k)
     of_samples.push_back(optics::map_coordinates_like(coordinates_, lens_rays_.hits[k], view_));
-  lens_.set_shown(seen_surface(), lens_rays_, of_samples);
+  lens_.set_shown(seen_surface(), raster_.exit_mask(index_, optics::other_side(lens_rays_.entered)),
+                  lens_rays_, of_samples);
 }
 
 void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {

@@ -10,11 +10,18 @@ namespace catoptra::render {
 namespace {
 
 // As in raster_lens.vert.glsl and raster_lens.glsl.
-constexpr GLuint kExitAttribute = 2, kShownAttribute = 4;
+constexpr GLuint kExitAttribute = 2, kMaskAttribute = 3, kShownAttribute = 4;
+constexpr GLuint kMaskUnit = 5;
 constexpr GLint kBlockedColor = 3, kOpticId = 6, kWeight = 12;
 
 // Wavelengths per draw: attributes and interpolants for this many are there in any OpenGL 4.5.
 constexpr std::size_t kSamplesPerDraw = 4;
+
+struct Exit {
+  glm::vec3 position;
+  float transmittance;
+  glm::vec2 mask;
+};
 
 }  // namespace
 
@@ -33,15 +40,17 @@ const GlProgram& LensPrograms::program(LensLook look, std::size_t samples, bool 
       .first->second;
 }
 
-void RasterLens::set_shown(const RasterOptic& side, const LensRays& rays,
+void RasterLens::set_shown(const RasterOptic& side, const LensMask& mask, const LensRays& rays,
                            const std::vector<std::vector<glm::dvec3>>& shown) {
   side_ = &side;
+  mask_ = &mask;
   batches_.clear();
   const std::size_t vertices = rays.hits[0].size(), samples = rays.samples.size();
-  std::vector<glm::vec4> exits;
+  std::vector<Exit> exits;
   exits.reserve(vertices);
   for (const optics::VertexHit& hit : rays.hits[0])
-    exits.emplace_back(glm::vec3(hit.surface_point_mm - side.center_mm()), float(hit.transmittance));
+    exits.push_back({glm::vec3(hit.surface_point_mm - side.center_mm()), float(hit.transmittance),
+                     glm::vec2(mask.place(hit.surface_point_mm))});
   exits_ = make_static_buffer(std::as_bytes(std::span(exits)));
   for (std::size_t first = 0; first < samples; first += kSamplesPerDraw) {
     const std::size_t count = std::min(kSamplesPerDraw, samples - first);
@@ -53,7 +62,8 @@ void RasterLens::set_shown(const RasterOptic& side, const LensRays& rays,
         values.emplace_back(glm::vec3(shown[k][i]), openness(rays.hits[k][i]));
     batch.shown = make_static_buffer(std::as_bytes(std::span(values)));
     batch.array = side.make_array();
-    bind_attributes(batch.array, 1, exits_, sizeof(glm::vec4), {{kExitAttribute, 4, 0}});
+    bind_attributes(batch.array, 1, exits_, sizeof(Exit),
+                    {{kExitAttribute, 4, 0}, {kMaskAttribute, 2, sizeof(glm::vec4)}});
     for (std::size_t k = 0; k < count; ++k) {
       bind_attributes(batch.array, 2, batch.shown, static_cast<GLsizei>(count * sizeof(glm::vec4)),
                       {{kShownAttribute + GLuint(k), 4, GLuint(k * sizeof(glm::vec4))}});
@@ -80,6 +90,7 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
     glUniform3f(kBlockedColor, blocked_color.x, blocked_color.y, blocked_color.z);
     glUniform1f(kOpticId, float(index));
     glUniformMatrix3fv(kWeight, GLsizei(batch.weights.size()), GL_FALSE, &batch.weights[0][0].x);
+    glBindTextureUnit(kMaskUnit, mask_->texture().id());
     set_look();
     side_->draw_triangles(batch.array);
   }

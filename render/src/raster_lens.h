@@ -9,6 +9,7 @@
 
 #include "render/src/gl_objects.h"
 #include "render/src/lens_rays.h"
+#include "render/src/raster_lens_mask.h"
 #include "render/src/raster_optic.h"
 #include "render/src/raster_target.h"
 #include "render/src/raster_view.h"
@@ -31,9 +32,10 @@ class LensPrograms {
 /// The vertex data of one lens for one position of the eye.
 class RasterLens {
  public:
-  /// `side`: the mesh of the side entered; `shown`: per sample of `rays` and vertex what the fragment shader
-  /// of the look in use expects: homogeneous map coordinates, or directions.
-  void set_shown(const RasterOptic& side, const LensRays& rays,
+  /// `side`: the mesh of the side entered; `mask`: of the other one; both must outlive the use; `shown`: per
+  /// sample of `rays` and vertex what the fragment shader of the look in use expects: homogeneous map
+  /// coordinates, or directions.
+  void set_shown(const RasterOptic& side, const LensMask& mask, const LensRays& rays,
                  const std::vector<std::vector<glm::dvec3>>& shown);
 
   /// Adds `lens`, number `index`, to what `target` (bound) shows from `camera`; geometry is that of the first
@@ -49,6 +51,7 @@ class RasterLens {
     std::vector<glm::mat3> weights;
   };
   const RasterOptic* side_ = nullptr;
+  const LensMask* mask_ = nullptr;
   GlBuffer exits_;
   std::vector<Batch> batches_;
 };

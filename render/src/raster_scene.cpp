@@ -133,6 +133,15 @@ void RasterScene::upload_textures(const SceneTextures& textures) {
 void RasterScene::optic_changed(std::size_t index) {
   optics_[index] = RasterOptic(scene_.optics[index].mesh);
   backs_[index] = back_of(scene_.optics[index]);
+  masks_.erase({index, optics::LensSide::front});
+  masks_.erase({index, optics::LensSide::back});
+}
+
+const LensMask& RasterScene::exit_mask(std::size_t lens, optics::LensSide exit) {
+  const auto found = masks_.find({lens, exit});
+  if (found != masks_.end()) return found->second;
+  const auto& mesh = *optics::side_of(scene_.optics[lens], exit).mesh;
+  return masks_.emplace(std::pair{lens, exit}, LensMask(*this, side(lens, exit), mesh)).first->second;
 }
 
 void RasterScene::begin_view(const RasterView& view, float level_bias) const {

@@ -6,11 +6,13 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "optics/lens_path.h"
 #include "render/scene.h"
 #include "render/src/gl_objects.h"
+#include "render/src/raster_lens_mask.h"
 #include "render/src/raster_optic.h"
 #include "render/src/raster_view.h"
 #include "render/src/textures.h"
@@ -42,6 +44,9 @@ class RasterScene {
   [[nodiscard]] const RasterOptic& side(std::size_t lens, optics::LensSide side) const {
     return side == optics::LensSide::front ? optics_[lens] : *backs_[lens];
   }
+
+  /// Of the surface by which light leaves `lens`. Binds another target where it is made for the first time.
+  const LensMask& exit_mask(std::size_t lens, optics::LensSide exit);
 
   /// Clears the bound target and draws surroundings, optics as asked, and the sky.
   void draw(const RasterView& view, const RasterPass& pass);
@@ -90,6 +95,7 @@ class RasterScene {
   std::map<unsigned, GlProgram> surface_programs_;
   std::map<bool, GlProgram> sky_programs_;
   GlProgram depth_program_;
+  std::map<std::pair<std::size_t, optics::LensSide>, LensMask> masks_;
 };
 
 }  // namespace catoptra::render
