@@ -82,7 +82,7 @@ class LensShape {
 };
 
 /// The lens as import_cad would read it: one solid with faces `front`, `back` (B-splines of degree 5 within
-/// 2e-8 mm of the LensShape, 1e-6 mm at rims that stand almost upright) and `rim` (planes or quarter
+/// 1e-7 mm of the LensShape, 1e-6 mm at rims that stand almost upright) and `rim` (planes or quarter
 /// cylinders). Throws Error.
 [[nodiscard]] CadModel lens_model(const LensShape& shape);
 

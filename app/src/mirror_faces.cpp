@@ -1,27 +1,18 @@
 #include "app/src/mirror_faces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
-#include <map>
-#include <numeric>
 #include <set>
 
 #include "app/src/nearest_name.h"
 #include "cad_import/error.h"
+#include "cad_import/face_groups.h"
 
 namespace catoptra::app {
 namespace {
 
 using cad_import::CadModel;
-using cad_import::EdgeUse;
 using cad_import::Face;
-
-/// Normals of two faces that differ by less than 1 degree at their edge make one surface: CAD patches of one
-/// designed surface join to 0.1 degree or so, while the bevel of a glass turns by tens of degrees.
-const double kSmoothJoinCosine = std::cos(glm::radians(1.0));
 
 /// Groups within this share of the largest are equally large: front and back of a bent sheet differ by less,
 /// and which is larger by rounding must not decide.
@@ -30,55 +21,6 @@ constexpr double kEquallyLarge = 0.99;
 /// A second group above this share of the largest may be meant as well: front and back of a glass differ by 1
 /// or 2 %.
 constexpr double kNearlyAsLarge = 0.9;
-
-/// Disjoint sets over face indices.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[std::size_t(i)] != i)
-      i = parent_[std::size_t(i)] = parent_[std::size_t(parent_[std::size_t(i)])];
-    return i;
-  }
-  void join(int a, int b) { parent_[std::size_t(find(a))] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
-struct FaceAtEdge {
-  int face;
-  const EdgeUse* use;
-};
-
-glm::dvec3 normal_at_middle(const CadModel& model, const FaceAtEdge& side) {
-  const glm::dvec2 uv = side.use->curve->uv(0.5 * (side.use->t_begin + side.use->t_end));
-  return model.faces[std::size_t(side.face)].surface->unit_normal(uv.x, uv.y);
-}
-
-void join_smooth_neighbours(const CadModel& model, Groups& groups) {
-  std::map<int, std::vector<FaceAtEdge>> sides;
-  for (const Face& face : model.faces) {
-    if (face.planar || !face.surface) continue;
-    for (const auto& loop : face.loops)
-      for (const EdgeUse& use : loop.edges)
-        if (!use.degenerate && use.curve) sides[use.edge].push_back({face.index, &use});
-  }
-  for (const auto& [edge, faces] : sides)
-    for (std::size_t i = 1; i < faces.size(); ++i)
-      if (faces[i].face != faces[0].face &&
-          glm::dot(normal_at_middle(model, faces[0]), normal_at_middle(model, faces[i])) > kSmoothJoinCosine)
-        groups.join(faces[0].face, faces[i].face);
-}
-
-void join_same_names(const CadModel& model, Groups& groups) {
-  std::map<std::string, int> first;
-  for (const Face& face : model.faces) {
-    if (face.planar || face.name.empty()) continue;
-    const auto [found, is_new] = first.emplace(face.name, face.index);
-    if (!is_new) groups.join(found->second, face.index);
-  }
-}
 
 std::vector<std::string> names_to_suggest(const CadModel& model) {
   std::set<std::string> names;
@@ -143,19 +85,16 @@ std::vector<int> select_faces(const CadModel& model, std::span<const FaceSelecto
 }
 
 std::vector<FaceGroup> curved_face_groups(const CadModel& model) {
-  Groups sets(model.faces.size());
-  join_smooth_neighbours(model, sets);
-  join_same_names(model, sets);
-  std::map<int, FaceGroup> by_root;
-  for (const Face& face : model.faces) {
-    if (face.planar) continue;
-    FaceGroup& group = by_root[sets.find(face.index)];
-    group.faces.push_back(face.index);
-    group.area_mm2 += face.area_mm2;
-    if (group.label.empty()) group.label = face.name.empty() ? face.id : face.name;
-  }
   std::vector<FaceGroup> groups;
-  for (auto& [root, group] : by_root) groups.push_back(std::move(group));
+  for (const std::vector<int>& faces : cad_import::smooth_face_groups(model, {.same_names = true})) {
+    FaceGroup group{faces, 0, ""};
+    for (const int index : faces) {
+      const Face& face = model.faces[std::size_t(index)];
+      group.area_mm2 += face.area_mm2;
+      if (group.label.empty()) group.label = face.name.empty() ? face.id : face.name;
+    }
+    groups.push_back(std::move(group));
+  }
   std::stable_sort(groups.begin(), groups.end(),
                    [](const FaceGroup& a, const FaceGroup& b) { return a.area_mm2 > b.area_mm2; });
   return groups;
