@@ -16,7 +16,7 @@ namespace catoptra::app {
 /// Where an optic of the scene came from, for benchmarks that mesh it again.
 struct OpticSource {
   cad_import::CadModel model;  ///< the whole file, placed in the scene, mm
-  std::vector<int> faces;      ///< indices in model.faces of the reflecting ones
+  std::vector<int> faces;      ///< indices in model.faces of the reflecting ones, or of a lens's front
 };
 
 /// A scene and the CAD data under it.
@@ -34,8 +34,8 @@ struct SceneReadOptions {
 /// Reads a scene file and every file it names; paths in it are relative to its folder. "-" reads standard
 /// input, with paths relative to the current folder. Throws catoptra::Error whose entity is "line N,
 /// table.key" for a key that is unknown, of the wrong type or out of range and for a file that is missing;
-/// ImportError for a file that cannot be imported. A scene that holds [[lens]] or
-/// [[planar]] is checked in full and then refused: this version cannot show them.
+/// ImportError for a file that cannot be imported. A scene that holds
+/// [[planar]] is checked in full and then refused: this version cannot show it.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& file, const SceneReadOptions& options = {});
 
 /// The same from text; `name` stands for the file in messages, `folder` is where its paths start.

@@ -24,9 +24,11 @@ struct BenchOptions {
 };
 
 struct ModeTiming {
-  render::Mode mode;
+  std::string name;  ///< of the mode; "pvrr_static": with eye and optics at rest
   FrameTiming timing;
 };
+
+constexpr const char* kStatic = "pvrr_static";
 
 using nlohmann::ordered_json;
 
@@ -38,9 +40,9 @@ std::vector<render::Mode> modes_with_reference(const BenchOptions& options) {
   return modes;
 }
 
-const FrameTiming* timing_of(const std::vector<ModeTiming>& timings, render::Mode mode) {
+const FrameTiming* timing_of(const std::vector<ModeTiming>& timings, std::string_view name) {
   const auto found =
-      std::find_if(timings.begin(), timings.end(), [&](const ModeTiming& t) { return t.mode == mode; });
+      std::find_if(timings.begin(), timings.end(), [&](const ModeTiming& t) { return t.name == name; });
   return found == timings.end() ? nullptr : &found->timing;
 }
 
@@ -69,20 +71,22 @@ ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
 std::size_t triangle_count(const render::Scene& scene) {
   std::size_t count = 0;
   for (const auto& mesh : scene.surroundings) count += mesh.triangles.size();
-  for (const auto& optic : scene.optics) count += optic.mesh.triangles.size();
+  for (const auto& optic : scene.optics)
+    count += optic.mesh.triangles.size() + optic.back.mesh.triangles.size();
   return count;
 }
 
 /// The ratios that do not follow from the frame times alone.
 void add_ratios(Session& session, const std::vector<ModeTiming>& timings, ordered_json& report) {
-  if (const FrameTiming* pvrr = timing_of(timings, render::Mode::pvrr))
-    if (const auto ratio = frame_over_raster_passes(*pvrr)) report["pvrr_over_raster_passes"] = *ratio;
+  for (const std::string name : {"pvrr", kStatic})
+    if (const FrameTiming* pvrr = timing_of(timings, name))
+      if (const auto ratio = frame_over_raster_passes(*pvrr)) report[name + "_over_raster_passes"] = *ratio;
   std::vector<double> bare;
   for (int i = 0; i < kBareRepetitions; ++i)
     bare.push_back(session.renderer().bare_packet_ms(session.scene().camera, session.frame));
   const double bare_ms = median(bare);
   report["bare_packet_ms"] = bare_ms;
-  report["raytrace_over_bare_packets"] = timing_of(timings, render::Mode::raytrace)->median_ms() / bare_ms;
+  report["raytrace_over_bare_packets"] = timing_of(timings, "raytrace")->median_ms() / bare_ms;
   if (session.scene().optics.empty()) return;
   session.progress.show(-1, "timing commits of the ray scene");
   const CommitTimes commits = time_commits(session.scene());
@@ -107,11 +111,11 @@ void print_table(const ordered_json& report) {
   std::printf("%s: %d x %d, %zu triangles\n", report["scene"].get<std::string>().c_str(),
               report["resolution"][0].get<int>(), report["resolution"][1].get<int>(),
               report["triangles"].get<std::size_t>());
-  std::printf("%-9s %7s %9s %9s %9s %11s %8s  %s\n", "mode", "frames", "min ms", "median", "max", "rays",
+  std::printf("%-11s %7s %9s %9s %9s %11s %8s  %s\n", "mode", "frames", "min ms", "median", "max", "rays",
               "speed-up", "passes (median ms)");
   for (const auto& [name, mode] : report["modes"].items()) {
     const auto& frame = mode["frame_ms"];
-    std::printf("%-9s %7d %9.2f %9.2f %9.2f %11zu %8.2f ", name.c_str(), mode["frames"].get<int>(),
+    std::printf("%-11s %7d %9.2f %9.2f %9.2f %11zu %8.2f ", name.c_str(), mode["frames"].get<int>(),
                 frame["min"].get<double>(), frame["median"].get<double>(), frame["max"].get<double>(),
                 mode["rays_per_frame"].get<std::size_t>(), mode["speedup_vs_raytrace"].get<double>());
     for (const auto& [pass_name, ms] : mode["time_ms"].items())
@@ -119,30 +123,67 @@ void print_table(const ordered_json& report) {
     std::printf("\n");
   }
   print_ratio(report, "pvrr_over_raster_passes", "pvrr frame / its own two raster passes");
+  print_ratio(report, "pvrr_static_over_raster_passes", "... with eye and optics at rest");
+  print_ratio(report, "colors_over_one_color", "pvrr with the lenses' wavelengths / with one, at rest");
   print_ratio(report, "raytrace_over_bare_packets", "raytrace frame / bare ray packets for the same rays");
   print_ratio(report, "optic_commit_over_full_build", "moving an optic / building the ray scene");
   print_ratio(report, "tessellate_over_brepmesh", "times faster than the CAD kernel's mesher");
 }
 
+/// Every mode with everything anew in each frame, as where the eye moves; pvrr also at rest (paper, section
+/// 5).
+std::vector<ModeTiming> time_modes(Session& session, const BenchOptions& options,
+                                   const std::vector<render::Mode>& modes) {
+  render::FrameOptions frame = session.frame;
+  frame.read_back = false;
+  std::vector<ModeTiming> timings;
+  const auto time = [&](std::string name, render::Mode mode, bool at_rest) {
+    frame.reuse_static = at_rest;
+    timings.push_back({std::move(name), time_frames(session.renderer(), mode, session.scene().camera, frame,
+                                                    options.frames, session.progress)});
+  };
+  for (const render::Mode mode : modes) {
+    time(std::string(render::mode_name(mode)), mode, false);
+    if (mode == render::Mode::pvrr) time(kStatic, mode, true);
+  }
+  return timings;
+}
+
+/// What dispersion costs: pvrr frames at rest as they are over frames with one wavelength a lens. Nullopt
+/// where no lens has more than one.
+std::optional<double> colors_over_one_color(Session& session, const BenchOptions& options,
+                                            const std::vector<ModeTiming>& timings) {
+  const FrameTiming* colors = timing_of(timings, kStatic);
+  render::Scene scene = session.scene();
+  bool dispersed = false;
+  for (auto& optic : scene.optics) {
+    dispersed = dispersed || (optic.kind == optics::OpticKind::lens && optic.wavelengths > 1);
+    optic.wavelengths = 1;
+  }
+  if (!colors || !dispersed) return std::nullopt;
+  render::FrameOptions frame = session.frame;
+  frame.read_back = false;
+  render::Renderer renderer(scene);
+  const FrameTiming one =
+      time_frames(renderer, render::Mode::pvrr, scene.camera, frame, options.frames, session.progress);
+  return colors->median_ms() / one.median_ms();
+}
+
 int run_bench(const BenchOptions& options, const CommonOptions& common) {
   const auto modes = modes_with_reference(options);
   Session session(options.drawing, common);
-  render::FrameOptions frame_options = session.frame;
-  frame_options.read_back = false;
-  std::vector<ModeTiming> timings;
-  for (const render::Mode mode : modes)
-    timings.push_back({mode, time_frames(session.renderer(), mode, session.scene().camera, frame_options,
-                                         options.frames, session.progress)});
+  const auto timings = time_modes(session, options, modes);
 
-  const double raytrace_ms = timing_of(timings, render::Mode::raytrace)->median_ms();
+  const double raytrace_ms = timing_of(timings, "raytrace")->median_ms();
   ordered_json by_mode = ordered_json::object();
-  for (const ModeTiming& t : timings)
-    by_mode[std::string(render::mode_name(t.mode))] = mode_json(t.timing, raytrace_ms);
+  for (const ModeTiming& t : timings) by_mode[t.name] = mode_json(t.timing, raytrace_ms);
   ordered_json report{{"scene", session.scene().file},
                       {"resolution", {session.frame.width, session.frame.height}},
                       {"triangles", triangle_count(session.scene())},
                       {"frames", options.frames},
                       {"modes", by_mode}};
+  if (const auto ratio = colors_over_one_color(session, options, timings))
+    report["colors_over_one_color"] = *ratio;
   add_ratios(session, timings, report);
   report["versions"] = versions_json();
   if (options.json)

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "app/scene_file.h"
 #include "app/src/toml_table.h"
 #include "cad_import/import.h"
+#include "tessellate/optic_mesh.h"
 
 namespace catoptra::app {
 
@@ -42,6 +44,19 @@ struct FileEntry {
 /// `reflectance`: a number, [r, g, b] or the name of a coating. Nullopt where absent.
 [[nodiscard]] std::optional<glm::vec3> read_reflectance(const TomlTable& table);
 
+/// `vertices` and `grid` of an optic, which exclude each other; else the scene's chord and angle.
+[[nodiscard]] tessellate::TessellationOptions tessellation_options(const TomlTable& table,
+                                                                   const render::RenderSettings& settings);
+
+/// The file's name without suffix, with a number where an optic is called that already.
+[[nodiscard]] std::string default_optic_name(const std::vector<optics::Optic>& optics,
+                                             const std::filesystem::path& path);
+
+/// Adds what an optic's file holds besides its `optical` faces - back, edge, rim, housing - to the
+/// surroundings; `color` where the file has none.
+void add_remaining_faces(const cad_import::CadModel& model, std::span<const int> optical, glm::vec3 color,
+                         render::Scene& scene);
+
 // One function per table of the file. Each takes the root table, reads what is there and checks it.
 [[nodiscard]] render::Camera read_camera(const TomlTable& root, const SceneContext& context);
 [[nodiscard]] render::Environment read_environment(const TomlTable& root, const SceneContext& context);
@@ -50,10 +65,10 @@ struct FileEntry {
                                                           std::vector<std::string>& warnings);
 void read_surroundings(const TomlTable& root, const SceneContext& context, SceneFile& result);
 void read_mirrors(const TomlTable& root, const SceneContext& context, SceneFile& result);
+void read_lenses(const TomlTable& root, const SceneContext& context, SceneFile& result);
 
-/// Checks every key of [[lens]] and [[planar]] and returns how the refusal names the first of them; empty
-/// where there is none.
-[[nodiscard]] std::string check_lenses(const TomlTable& root, const SceneContext& context);
+/// Checks every key of [[planar]] and returns how the refusal names the first of them; empty where there is
+/// none.
 [[nodiscard]] std::string check_planars(const TomlTable& root, const SceneContext& context);
 
 }  // namespace catoptra::app

@@ -30,13 +30,12 @@ double read_unit_mm(const TomlTable& root) {
   return *mm;
 }
 
-/// Lenses and planar optics are part of the format but not of this version: refused, not left out of the
-/// picture.
+/// Planar optics are part of the format but not of this version: refused, not left out of the picture.
 void refuse_what_cannot_be_shown(const TomlTable& root, const SceneContext& context) {
-  for (const std::string& entity : {check_lenses(root, context), check_planars(root, context)})
-    if (!entity.empty())
-      throw Error(context.name, entity, "this version of Catoptra does not render lenses and planar optics",
-                  "remove the table, or use a [[mirror]] from a flat face");
+  const std::string entity = check_planars(root, context);
+  if (!entity.empty())
+    throw Error(context.name, entity, "this version of Catoptra does not render planar optics",
+                "remove the table, or use a [[mirror]] from a flat face");
 }
 
 std::string read_all(std::istream& stream) {
@@ -68,6 +67,7 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
     }
   read_surroundings(root, context, result);
   read_mirrors(root, context, result);
+  read_lenses(root, context, result);
   return result;
 }
 

@@ -33,22 +33,6 @@ MirrorFile& open_mirror_file(std::vector<MirrorFile>& files, const FileEntry& en
   return files.back();
 }
 
-tessellate::TessellationOptions tessellation_options(const TomlTable& table,
-                                                     const render::RenderSettings& settings) {
-  tessellate::TessellationOptions options;
-  options.chord_mm = settings.chord_mm;
-  options.angle_rad = settings.angle_rad;
-  if (table.has("vertices") && table.has("grid")) table.fail("grid", "vertices and grid exclude each other");
-  if (const auto vertices = table.integer("vertices", 4, 1'000'000))
-    options.target_vertices = std::size_t(*vertices);
-  if (const auto grid = table.numbers("grid", 2, {2, 4096})) {
-    options.grid = {static_cast<int>((*grid)[0]), static_cast<int>((*grid)[1])};
-    if (options.grid->columns != (*grid)[0] || options.grid->rows != (*grid)[1])
-      table.fail("grid", "expected two integers");
-  }
-  return options;
-}
-
 std::vector<int> faces_of_mirror(const TomlTable& table, const cad_import::CadModel& model,
                                  std::vector<std::string>& warnings) {
   const auto selectors = read_face_selectors(table, "faces");
@@ -62,16 +46,6 @@ std::vector<int> faces_of_mirror(const TomlTable& table, const cad_import::CadMo
   DefaultFaces chosen = default_mirror_faces(model);
   if (!chosen.warning.empty()) warnings.push_back(chosen.warning);
   return chosen.faces;
-}
-
-std::string default_name(const std::vector<optics::Optic>& optics, const std::filesystem::path& path) {
-  const std::string stem = path.stem().string();
-  std::string name = stem;
-  const auto taken = [&] {
-    return std::any_of(optics.begin(), optics.end(), [&](const auto& o) { return o.name == name; });
-  };
-  for (int number = 2; taken(); ++number) name = stem + " " + std::to_string(number);
-  return name;
 }
 
 optics::Optic make_mirror(const TomlTable& table, const cad_import::CadModel& model,
@@ -111,20 +85,9 @@ void read_mirror(const TomlTable& table, const SceneContext& context, std::vecto
       table.fail("faces",
                  "face " + std::to_string(face) + " already belongs to another mirror of this scene");
   optics::Optic optic = make_mirror(table, file.model, faces, result.scene);
-  optic.name = name.value_or(default_name(result.scene.optics, entry.path));
+  optic.name = name.value_or(default_optic_name(result.scene.optics, entry.path));
   result.scene.optics.push_back(std::move(optic));
   result.optic_sources.push_back({file.model, faces});
-}
-
-/// Back, edge and housing: what the mirrors' files hold besides the reflecting faces.
-void add_remaining_faces(const MirrorFile& file, render::Scene& scene) {
-  std::vector<int> rest;
-  for (const auto& face : file.model.faces)
-    if (!file.reflecting.contains(face.index)) rest.push_back(face.index);
-  if (rest.empty()) return;
-  scene.surroundings.push_back(cad_import::triangulate(file.model, rest, {}, file.color));
-  const auto& warnings = scene.surroundings.back().warnings;
-  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
 }
 
 }  // namespace
@@ -184,6 +147,43 @@ std::optional<glm::vec3> read_reflectance(const TomlTable& table) {
   table.fail("reflectance", "unknown coating '" + *name + "'", hint_for_unknown(*name, known));
 }
 
+tessellate::TessellationOptions tessellation_options(const TomlTable& table,
+                                                     const render::RenderSettings& settings) {
+  tessellate::TessellationOptions options;
+  options.chord_mm = settings.chord_mm;
+  options.angle_rad = settings.angle_rad;
+  if (table.has("vertices") && table.has("grid")) table.fail("grid", "vertices and grid exclude each other");
+  if (const auto vertices = table.integer("vertices", 4, 1'000'000))
+    options.target_vertices = std::size_t(*vertices);
+  if (const auto grid = table.numbers("grid", 2, {2, 4096})) {
+    options.grid = {static_cast<int>((*grid)[0]), static_cast<int>((*grid)[1])};
+    if (options.grid->columns != (*grid)[0] || options.grid->rows != (*grid)[1])
+      table.fail("grid", "expected two integers");
+  }
+  return options;
+}
+
+std::string default_optic_name(const std::vector<optics::Optic>& optics, const std::filesystem::path& path) {
+  const std::string stem = path.stem().string();
+  std::string name = stem;
+  const auto taken = [&] {
+    return std::any_of(optics.begin(), optics.end(), [&](const auto& o) { return o.name == name; });
+  };
+  for (int number = 2; taken(); ++number) name = stem + " " + std::to_string(number);
+  return name;
+}
+
+void add_remaining_faces(const cad_import::CadModel& model, std::span<const int> optical, glm::vec3 color,
+                         render::Scene& scene) {
+  std::vector<int> rest;
+  for (const auto& face : model.faces)
+    if (std::find(optical.begin(), optical.end(), face.index) == optical.end()) rest.push_back(face.index);
+  if (rest.empty()) return;
+  scene.surroundings.push_back(cad_import::triangulate(model, rest, {}, color));
+  const auto& warnings = scene.surroundings.back().warnings;
+  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+}
+
 void read_surroundings(const TomlTable& root, const SceneContext& context, SceneFile& result) {
   for (const toml::table* found : root.tables("surrounding")) {
     const TomlTable table(*found, context.name, "surrounding",
@@ -209,7 +209,8 @@ void read_mirrors(const TomlTable& root, const SceneContext& context, SceneFile&
   for (const MirrorFile& file : files) {
     result.scene.warnings.insert(result.scene.warnings.end(), file.model.warnings.begin(),
                                  file.model.warnings.end());
-    add_remaining_faces(file, result.scene);
+    const std::vector<int> reflecting(file.reflecting.begin(), file.reflecting.end());
+    add_remaining_faces(file.model, reflecting, file.color, result.scene);
   }
 }
 
