@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
+#include "optics/vertex_hits.h"
 #include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
 
@@ -12,6 +14,7 @@ namespace {
 constexpr GLint kCubeCenter = 8;  // as in cubemap_optic.frag.glsl
 constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
 constexpr int kSmallest = 64, kLargest = 1024;
+constexpr double kClearOfGlass_mm = 1;
 
 /// Texels per unit of tangent are the same at the middle of a face and of the picture, times
 /// texels_per_pixel.
@@ -19,6 +22,20 @@ int face_size(const Camera& camera, const FrameOptions& options, double texels_p
   const double pixels_per_tangent = options.height / (2 * std::tan(camera.fov_rad / 2));
   const int size = static_cast<int>(std::ceil(2 * pixels_per_tangent * texels_per_pixel));
   return std::clamp(size, kSmallest, kLargest);
+}
+
+/// The area centroid of a convex mirror lies inside its glass, from where the map would show the glass's
+/// back: the point before it, along the mean reflecting normal, that is just clear of the highest vertex.
+glm::dvec3 before_mirror(const optics::Optic& mirror, const glm::dvec3& centroid_mm) {
+  glm::dvec3 sum{0};
+  for (const auto& vertex : mirror.mesh.vertices) sum += optics::reflecting_normal(mirror, vertex.normal);
+  const double length = glm::length(sum);
+  if (!(length > 0)) return centroid_mm;
+  const glm::dvec3 axis = sum / length;
+  double highest_mm = 0;
+  for (const auto& vertex : mirror.mesh.vertices)
+    highest_mm = std::max(highest_mm, glm::dot(vertex.position_mm - centroid_mm, axis));
+  return centroid_mm + (highest_mm + kClearOfGlass_mm) * axis;
 }
 
 }  // namespace
@@ -125,7 +142,8 @@ void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool 
 
 glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {
   const glm::dvec3& front = raster_.optic(optic).center_mm();
-  if (scene_.optics[optic].kind == optics::OpticKind::mirror) return front;
+  if (scene_.optics[optic].kind == optics::OpticKind::mirror)
+    return before_mirror(scene_.optics[optic], front);
   return 0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm());
 }
 
