@@ -18,7 +18,7 @@ namespace catoptra::cad_import {
 ///   sphere, conic, asphere: c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + a_2 r^4 + a_3 r^6 + ...
 ///   freeform: an umbilical meridian x = 0 whose curvature rises from c at the vertex to c + addition at
 ///   `corridor_mm` along the arc below it, with circles of the same curvature across (Koeppen's elephant's
-///   trunk, the curvature three times differentiable along the meridian).
+///   trunk, the curvature four times differentiable along the meridian).
 enum class LensFrontForm { sphere, conic, asphere, freeform };
 
 /// A lens to order in the frame of docs/conventions.md: front vertex at the origin, front towards +z, x right

@@ -106,7 +106,7 @@ std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common) 
 
 std::vector<Command> add_reserved_commands(CLI::App& root, CommonOptions&) {
   std::vector<Command> commands;
-  for (const std::string name : {"lens", "batch"}) {
+  for (const std::string name : {"batch"}) {
     CLI::App* app = root.add_subcommand(name, "Not in this version")->group("")->prefix_command();
     commands.push_back({app, [name]() -> int {
                           throw UsageError("'catoptra " + name + "' is not in this version",

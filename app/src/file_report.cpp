@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "cad_import/lens_faces.h"
+
 namespace catoptra::app {
 namespace {
 
@@ -29,6 +31,22 @@ ordered_json face_json(const cad_import::Face& face) {
           {"color", color_json(face.color)}};
 }
 
+/// Only where a body looks like a lens. Curvatures in 1/mm, larger first.
+void add_lens_json(const cad_import::CadModel& model, std::size_t body, ordered_json& report) {
+  const auto lens = cad_import::lens_in_body(model, static_cast<int>(body));
+  if (!lens) return;
+  const cad_import::LensGeometry& g = lens->geometry;
+  report["lens"] = {{"front", lens->front},
+                    {"back", lens->back},
+                    {"rim", lens->rim},
+                    {"axis", triple(g.axis)},
+                    {"center_thickness_mm", g.center_thickness_mm},
+                    {"front_vertex_mm", triple(g.front_vertex_mm)},
+                    {"back_vertex_mm", triple(g.back_vertex_mm)},
+                    {"front_vertex_curvature", {g.front_curvature.k1, g.front_curvature.k2}},
+                    {"back_vertex_curvature", {g.back_curvature.k1, g.back_curvature.k2}}};
+}
+
 template <typename... Values>
 std::string format(const char* pattern, Values... values) {
   std::array<char, 512> text{};
@@ -49,6 +67,16 @@ std::string box_text(const ordered_json& box) {
   return text + ")";
 }
 
+std::string lens_text(const ordered_json& lens) {
+  const auto value = [&](const char* key, std::size_t i) { return lens[key][i].get<double>(); };
+  return format("    looks like a lens: axis (%.6g, %.6g, %.6g), %.6g mm thick at its center\n",
+                value("axis", 0), value("axis", 1), value("axis", 2),
+                lens["center_thickness_mm"].get<double>()) +
+         format("      vertex curvatures: front %.6g and %.6g, back %.6g and %.6g per mm\n",
+                value("front_vertex_curvature", 0), value("front_vertex_curvature", 1),
+                value("back_vertex_curvature", 0), value("back_vertex_curvature", 1));
+}
+
 std::string body_text(const ordered_json& body) {
   const std::string name = body["name"].get<std::string>();
   std::string text = format("  body '%s' (%s, %zu faces)\n", name.c_str(),
@@ -58,6 +86,7 @@ std::string body_text(const ordered_json& body) {
                    face["id"].get<std::string>().c_str(), face["surface"].get<std::string>().c_str(),
                    face["area_mm2"].get<double>(), face["planar"].get<bool>() ? "  planar" : "        ",
                    face["name"].get<std::string>().c_str());
+  if (body.contains("lens")) text += lens_text(body["lens"]);
   return text;
 }
 
@@ -78,11 +107,13 @@ ordered_json box_json(const cad_import::BoundingBox& box) {
 
 ordered_json cad_json(const cad_import::CadModel& model) {
   ordered_json bodies = ordered_json::array();
-  for (const auto& body : model.bodies) {
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const auto& body = model.bodies[i];
     ordered_json faces = ordered_json::array();
     for (const int index : body.faces) faces.push_back(face_json(model.faces[std::size_t(index)]));
     bodies.push_back(
         {{"name", body.name}, {"color", color_json(body.color)}, {"solid", body.solid}, {"faces", faces}});
+    add_lens_json(model, i, bodies.back());
   }
   return {{"file", model.file},
           {"format", model.format},

@@ -11,15 +11,19 @@ namespace {
 
 constexpr int kCorridorPanels = 16;
 
-/// Step from 0 to 1 over t in [0, 1] with three continuous derivatives, its integral and its derivative.
+/// Step from 0 to 1 over t in [0, 1] with four continuous derivatives (as many as the fitted spline has), its
+/// integral and its derivative.
 double step(double t) {
-  return t * t * t * t * (35 + t * (-84 + t * (70 - 20 * t)));
+  const double t2 = t * t;
+  return t2 * t2 * t * (126 + t * (-420 + t * (540 + t * (-315 + 70 * t))));
 }
 double step_integral(double t) {
-  return t * t * t * t * t * (7 + t * (-14 + t * (10 - 2.5 * t)));
+  const double t3 = t * t * t;
+  return t3 * t3 * (21 + t * (-60 + t * (67.5 + t * (-35 + 7 * t))));
 }
 double step_derivative(double t) {
-  return 140 * t * t * t * (1 - t) * (1 - t) * (1 - t);
+  const double u = t * (1 - t);
+  return 630 * u * u * u * u;
 }
 
 /// (y, z) moved along an arc of constant curvature from the direction (-cos, -sin) of `angle`.

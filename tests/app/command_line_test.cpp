@@ -17,7 +17,7 @@ std::size_t lines_in(const std::string& text) {
 }
 
 const std::vector<std::vector<std::string>> kCommands{
-    {},         {"info"},           {"render"}, {"compare"},   {"bench"},
+    {},         {"info"},           {"render"}, {"compare"},   {"bench"}, {"lens"}, {"lens", "make"},
     {"mirror"}, {"mirror", "make"}, {"man"},    {"completion"}};
 
 TEST(CommandLine, EveryCommandHasHelpAndVersion) {
@@ -52,7 +52,10 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"mirror"},
       {"mirror", "evaluate", "scene.toml"},
       {"mirror", "make", "--radius", "100", "--radius-h", "100", "--radius-v", "90", "-o", "m.step"},
-      {"lens", "make", "--sph", "-2", "-o", "l.step"},
+      {"lens"},
+      {"lens", "make", "--sph", "-2"},
+      {"lens", "make", "--index", "1.6", "--material", "CR-39", "-o", "l.step"},
+      {"lens", "make", "--front", "cone", "-o", "l.step"},
       {"batch", "run", "plan.toml"},
       {"completion", "csh"},
   };

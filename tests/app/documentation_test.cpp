@@ -32,7 +32,8 @@ TEST(Documentation, NamesEveryOptionOfTheCommandLine) {
 
 TEST(Documentation, NamesEveryCommand) {
   const std::string text = document("command-line.md");
-  for (const char* command : {"info", "render", "compare", "bench", "mirror make", "man", "completion"})
+  for (const char* command :
+       {"info", "render", "compare", "bench", "lens make", "mirror make", "man", "completion"})
     EXPECT_NE(text.find("## catoptra " + std::string(command)), std::string::npos) << command;
 }
 

@@ -273,11 +273,9 @@ TEST(Progressive, SecondDifferencesHaveNoJump) {
   const CadModel model = lens_model(shape);
   const Face& front = test::face_called(model, "front");
   // Near the corridor z = sphere + (growth of curvature) x^2 / 2 with a growth of 3 D, 0.006 / mm, times a
-  // step over 14 mm whose first derivative is at most 35/16 and whose third at most 52.5. The slope of the
+  // step over 14 mm whose first derivative is at most 2.46 and whose third at most 78.75. The slope of the
   // sphere adds less than as much again.
-  const auto steepest = [](double x) {
-    return 2 * 0.006 * (35.0 / 16 / 14 + x * x / 2 * 52.5 / (14 * 14 * 14));
-  };
+  const auto steepest = [](double x) { return 2 * 0.006 * (2.46 / 14 + x * x / 2 * 78.75 / (14 * 14 * 14)); };
   constexpr double kStep_mm = 0.1;
   for (const double x : {0.0, 5.0, 15.0, -20.0}) {
     double before = 0;

@@ -1,0 +1,134 @@
+// catoptra lens make
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/src/commands.h"
+#include "app/src/output_file.h"
+#include "cad_import/lens_blank.h"
+#include "optics/medium.h"
+
+namespace catoptra::app {
+namespace {
+
+/// Where no other line is the material's reference. Source: ISO 7944.
+constexpr double kHeliumD_nm = 587.56;
+constexpr double kMercuryE_nm = 546.07;
+
+struct MakeOptions {
+  cad_import::LensBlank blank;
+  std::optional<double> index, front_curve, center_thickness, edge_thickness, diameter;
+  std::string material, front, outline, output;
+  std::vector<double> asphere;
+};
+
+/// At the d line, unless the material is quoted for e alone.
+double index_of(const MakeOptions& options) {
+  if (options.index && !options.material.empty()) throw UsageError("--index excludes --material");
+  if (options.material.empty()) return options.index.value_or(1.5);
+  const optics::Medium& medium = optics::built_in_media().find(options.material);
+  return medium.index(medium.nd == 0 && medium.ne > 0 ? kMercuryE_nm : kHeliumD_nm);
+}
+
+/// The form asked for, or the one that the other options need.
+cad_import::LensFrontForm front_form(const MakeOptions& options) {
+  using cad_import::LensFrontForm;
+  if (options.front == "sphere") return LensFrontForm::sphere;
+  if (options.front == "conic") return LensFrontForm::conic;
+  if (options.front == "asphere") return LensFrontForm::asphere;
+  if (options.front == "freeform" || options.blank.addition_d != 0) return LensFrontForm::freeform;
+  if (!options.asphere.empty()) return LensFrontForm::asphere;
+  return options.blank.conic != 0 ? LensFrontForm::conic : LensFrontForm::sphere;
+}
+
+std::string summary(const cad_import::LensShape& shape) {
+  const cad_import::LensBlankReport& report = shape.report();
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(),
+                "index %.5g\n"
+                "front curve %.4g D, radius %.6g mm\n"
+                "back radii %.6g and %.6g mm\n"
+                "thickness %.4g mm at the center, %.4g to %.4g mm at the edge\n",
+                shape.blank().index, report.front_curve_d, report.front_radius_mm, report.back_radius1_mm,
+                report.back_radius2_mm, report.center_thickness_mm, report.edge_thickness_min_mm,
+                report.edge_thickness_max_mm);
+  return text.data();
+}
+
+int run_make(const MakeOptions& options) {
+  if (options.diameter && !options.outline.empty()) throw UsageError("--diameter excludes --outline");
+  cad_import::LensBlank blank = options.blank;
+  blank.index = index_of(options);
+  blank.front = front_form(options);
+  blank.front_curve_d = options.front_curve;
+  blank.asphere_mm = options.asphere;
+  blank.center_thickness_mm = options.center_thickness;
+  blank.edge_thickness_mm = options.edge_thickness;
+  blank.diameter_mm = options.diameter.value_or(blank.diameter_mm);
+  if (!options.outline.empty()) blank.outline = cad_import::read_outline(options.outline);
+  const cad_import::LensShape shape(blank);
+  cad_import::write_lens(shape, options.output);
+  write_text("-", summary(shape));
+  return kExitDone;
+}
+
+void add_prescription(CLI::App& app, MakeOptions& options) {
+  cad_import::LensBlank& blank = options.blank;
+  const auto add = [&app](const char* name, auto& value, const char* text, const char* shown) {
+    app.add_option(name, value, text)->option_text(shown)->group("Prescription");
+  };
+  add("--sph", blank.sphere_d, "Sphere, back vertex power in dioptre (default 0)", "S");
+  add("--cyl", blank.cylinder_d, "Cylinder in dioptre, either sign (default 0)", "C");
+  add("--axis", blank.axis_deg, "Axis of the cylinder, TABO, 0 to 180 degrees (default 0)", "A");
+  add("--add", blank.addition_d, "Addition of a progressive front in dioptre (default 0)", "D");
+  add("--corridor", blank.corridor_mm, "Length over which the addition grows, mm (default 14)", "L");
+  add("--prism", blank.prism_d, "Prism in prism dioptre (default 0)", "P");
+  add("--base-deg", blank.prism_base_deg, "Base of the prism, TABO, 0 to 360 degrees (default 0)", "B");
+}
+
+void add_form(CLI::App& app, MakeOptions& options) {
+  const auto add = [&app](const char* name, auto& value, const char* text, const char* shown) {
+    return app.add_option(name, value, text)->option_text(shown)->group("Material and form");
+  };
+  add("--index", options.index, "Refractive index at the d line (default 1.5)", "N");
+  add("--material", options.material, "Material by name, such as CR-39, in place of --index", "M");
+  add("--front-curve", options.front_curve, "Front power (n - 1) / R in dioptre (default: Vogel's rule)",
+      "F");
+  add("--front", options.front, "Form of the front (default: what the other options need, else sphere)",
+      "sphere|conic|asphere|freeform")
+      ->check(CLI::IsMember({"sphere", "conic", "asphere", "freeform"}));
+  add("--conic", options.blank.conic, "Conic constant of a conic or aspheric front (default 0)", "K");
+  add("--asphere", options.asphere, "Coefficients of r^4, r^6, ... of an aspheric front, in mm", "A4,A6,...")
+      ->delimiter(',');
+  add("--back-conic", options.blank.back_conic,
+      "Conic constant of the back's principal sections: an atoric back (default 0)", "K");
+  add("--center-thickness", options.center_thickness,
+      "Thickness at the vertex in mm (default: 2, more where the edge needs it)", "T");
+  add("--edge-thickness", options.edge_thickness, "Least thickness of the edge in mm, in place of the center",
+      "T");
+  add("--diameter", options.diameter, "Of a round lens in mm (default 65)", "D");
+  add("--outline", options.outline, "File with one corner \"x y\" in mm per line, in place of --diameter",
+      "FILE");
+}
+
+}  // namespace
+
+std::vector<Command> add_lens_commands(CLI::App& root, CommonOptions& common) {
+  CLI::App* lens = add_subcommand(root, common, "lens", "Make spectacle lenses");
+  lens->require_subcommand(0, 1);
+  auto options = std::make_shared<MakeOptions>();
+  CLI::App* make = add_subcommand(*lens, common, "make",
+                                  "Write a lens to a prescription as a STEP solid with the faces front, back "
+                                  "and rim");
+  add_prescription(*make, *options);
+  add_form(*make, *options);
+  make->add_option("-o,--output", options->output, "STEP file to write")
+      ->required()
+      ->option_text("LENS.step");
+  CLI::App* evaluate = lens->add_subcommand("evaluate", "Not in this version")->group("")->prefix_command();
+  return {{make, [options] { return run_make(*options); }},
+          {evaluate, []() -> int { throw UsageError("'catoptra lens evaluate' is not in this version"); }}};
+}
+
+}  // namespace catoptra::app
