@@ -1,9 +1,12 @@
 // Writes the models of the examples as .glb files into a folder: the street, the car around the driver, a
-// wall.
+// wall, a living room, mounts of lenses.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "examples/room/room.h"
+#include "examples/room/room_palette.h"
+#include "examples/room/spectacles.h"
 #include "examples/street/flank.h"
 #include "examples/street/glb.h"
 #include "examples/street/house.h"
@@ -42,7 +45,8 @@ int main(int argc, char** argv) try {
     std::cerr << "usage: make_models FONT.ttf FOLDER\n";
     return 2;
   }
-  const Palette palette = make_palette(argv[1]);
+  Palette palette = make_palette(argv[1]);
+  add_room_paints(palette, argv[1]);
   const std::filesystem::path folder = argv[2];
   std::filesystem::create_directories(folder);
   write(folder / "street.glb", make_street(), palette);
@@ -52,6 +56,9 @@ int main(int argc, char** argv) try {
     write(folder / (std::string("housing_") + housing.name + ".glb"),
           make_housing(housing.width_m, housing.height_m, housing.radius_m), palette);
   write(folder / "wall.glb", make_wall(), palette);
+  write(folder / "room.glb", make_room(), palette);
+  write(folder / "spectacle_frame.glb", make_spectacle_frame({}), palette);
+  write(folder / "hand_lens.glb", make_hand_lens(0.065f), palette);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "make_models: " << error.what() << '\n';

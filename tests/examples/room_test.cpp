@@ -1,0 +1,69 @@
+// The living room and the mounts: what the lens scenes rely on.
+#include "examples/room/room.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "examples/room/room_palette.h"
+#include "examples/room/spectacles.h"
+#include "examples/street/palette.h"
+
+namespace catoptra::examples {
+namespace {
+
+/// Triangles that have an area, unit normals, paints that are there.
+void expect_sound(const Model& model) {
+  Palette palette = make_palette(CATOPTRA_SIGN_FONT);
+  add_room_paints(palette, CATOPTRA_SIGN_FONT);
+  for (const auto& [name, surface] : model.surfaces) {
+    ASSERT_TRUE(palette.paints.contains(name)) << name;
+    const std::string& texture = palette.paints.at(name).texture;
+    ASSERT_TRUE(texture.empty() || palette.textures.contains(texture)) << name;
+    for (const Vertex& vertex : surface.vertices)
+      ASSERT_NEAR(glm::length(vertex.normal), 1, 1e-5) << name;  // single precision
+    for (std::size_t i = 0; i < surface.indices.size(); i += 3) {
+      const auto corner = [&](std::size_t k) { return surface.vertices.at(surface.indices[i + k]).position; };
+      // The finest part is a frame of 2 mm tubes: no triangle below a hundredth of a square millimetre.
+      ASSERT_GT(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) / 2, 1e-8f) << name;
+    }
+  }
+}
+
+TEST(Room, HasThreeToSixThousandTriangles) {
+  const Model room = make_room();
+  EXPECT_GE(room.triangle_count(), 3000u);
+  EXPECT_LE(room.triangle_count(), 6000u);
+  expect_sound(room);
+}
+
+TEST(Room, LeavesTheEyeAndTheLensRoom) {
+  // The person sits at the origin: nothing is nearer than 0.8 m to the eye at (0, 0, 1.2).
+  for (const auto& [name, surface] : make_room().surfaces)
+    for (const Vertex& v : surface.vertices)
+      EXPECT_GT(glm::length(v.position - glm::vec3(0, 0, 1.2f)), 0.8f) << name;
+}
+
+TEST(Spectacles, FrameLeavesTheLensesClear) {
+  const SpectacleSize size;
+  const Model frame = make_spectacle_frame(size);
+  expect_sound(frame);
+  // Rims cover the edge of the glass by less than 1 mm.
+  for (const auto& [name, surface] : frame.surfaces)
+    for (const Vertex& v : surface.vertices) {
+      const float x = std::abs(v.position.x) - size.pupil_distance / 2;
+      EXPECT_GT(std::hypot(x, v.position.z), size.lens_diameter / 2 - 0.001f) << name;
+    }
+}
+
+TEST(HandLens, RingLeavesTheLensClear) {
+  const Model glass = make_hand_lens(0.065f);
+  expect_sound(glass);
+  for (const auto& [name, surface] : glass.surfaces)
+    for (const Vertex& v : surface.vertices)
+      EXPECT_GT(std::hypot(v.position.x, v.position.z), 0.0325f - 0.001f) << name;
+}
+
+}  // namespace
+}  // namespace catoptra::examples
