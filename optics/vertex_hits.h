@@ -54,6 +54,11 @@ inline constexpr double kSelfHitDistance_mm = 0.01;
                                                       LensSide entered, double wavelength_nm,
                                                       const glm::dvec3& eye_mm);
 
+/// One such ray, through any point of the entered side, for which `vertex` holds what a vertex would.
+[[nodiscard]] VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens,
+                                       const LensTracer& tracer, LensSide entered, const LensIndices& indices,
+                                       const glm::dvec3& eye_mm);
+
 /// The same rays with their hits among the surroundings of `scene`; former hits are replaced.
 [[nodiscard]] std::vector<VertexHit> find_scene_hits(std::vector<VertexHit> rays, const RayScene& scene);
 

@@ -39,30 +39,6 @@ Arrival arrive(const tessellate::OpticVertex& vertex, const glm::dvec3& eye_mm) 
   return arrival;
 }
 
-VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const LensTracer& tracer, LensSide entered,
-                         const LensIndices& indices, std::span<const cad_import::Face> exit_faces,
-                         const glm::dvec3& eye_mm) {
-  auto [hit, distance] = arrive(vertex, eye_mm);
-  hit.end = LensPathEnd::missed;
-  hit.transmittance = 0;
-  if (!(glm::dot(hit.from_eye, vertex.normal) < 0)) return hit;
-  const ExactHit entry{distance, vertex.position_mm, vertex.normal, vertex.face, vertex.uv, 0};
-  const LensPath path = tracer.trace_from({eye_mm, hit.from_eye}, entry, entered, indices);
-  hit.end = path.end;
-  if (path.end != LensPathEnd::passed) return hit;
-  hit.faces_eye = true;
-  hit.surface_point_mm = path.exit.position_mm;
-  hit.direction = path.outside;
-  hit.transmittance = path.transmittance;
-  const LocalSurface exit = surface_at(exit_faces, path.exit);
-  const double inwards = indices.around / indices.lens;
-  const auto inside = refracted(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
-                                path.inside, inwards, surface_at(vertex));
-  hit.differential = refracted(transferred(inside, path.inside, path.exit.t_mm, exit.normal), path.inside,
-                               path.outside, 1 / inwards, exit);
-  return hit;
-}
-
 }  // namespace
 
 std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& eye_mm) {
@@ -83,16 +59,38 @@ std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& e
   return hits;
 }
 
+VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens, const LensTracer& tracer,
+                         LensSide entered, const LensIndices& indices, const glm::dvec3& eye_mm) {
+  auto [hit, distance] = arrive(vertex, eye_mm);
+  hit.end = LensPathEnd::missed;
+  hit.transmittance = 0;
+  if (!(glm::dot(hit.from_eye, vertex.normal) < 0)) return hit;
+  const ExactHit entry{distance, vertex.position_mm, vertex.normal, vertex.face, vertex.uv, 0};
+  const LensPath path = tracer.trace_from({eye_mm, hit.from_eye}, entry, entered, indices);
+  hit.end = path.end;
+  if (path.end != LensPathEnd::passed) return hit;
+  hit.faces_eye = true;
+  hit.surface_point_mm = path.exit.position_mm;
+  hit.direction = path.outside;
+  hit.transmittance = path.transmittance;
+  const LocalSurface exit = surface_at(side_of(lens, other_side(entered)).faces, path.exit);
+  const double inwards = indices.around / indices.lens;
+  const auto inside = refracted(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
+                                path.inside, inwards, surface_at(vertex));
+  hit.differential = refracted(transferred(inside, path.inside, path.exit.t_mm, exit.normal), path.inside,
+                               path.outside, 1 / inwards, exit);
+  return hit;
+}
+
 std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
                                         double wavelength_nm, const glm::dvec3& eye_mm) {
   if (lens.kind != OpticKind::lens) throw Error("", lens.name, "is a mirror, and light does not pass it");
   const auto& vertices = side_of(lens, entered).mesh->vertices;
-  const auto exit_faces = side_of(lens, other_side(entered)).faces;
   const LensIndices indices = lens_indices(lens, wavelength_nm);
   std::vector<VertexHit> hits(vertices.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), kVerticesPerTask), [&](const auto& some) {
     for (std::size_t i = some.begin(); i < some.end(); ++i)
-      hits[i] = refract_vertex(vertices[i], tracer, entered, indices, exit_faces, eye_mm);
+      hits[i] = refract_vertex(vertices[i], lens, tracer, entered, indices, eye_mm);
   });
   return hits;
 }

@@ -73,17 +73,22 @@ void allocate(Frame& frame, const FrameOptions& options) {
 
 }  // namespace
 
+const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic) {
+  static const tessellate::OpticArrays none;
+  return optic.kind == optics::OpticKind::mirror ? optic.mesh : none;
+}
+
 struct RayTracer::Impl {
   PacketTracer packets;
 
   /// Traces tiles of rows [first, last) of tiles; adds up the rays.
-  std::size_t trace_tile_rows(const CameraRays& camera, const FrameOptions& options, int first, int last,
+  std::size_t trace_tile_rows(const PacketView& view, const FrameOptions& options, int first, int last,
                               Frame& frame) const {
     const int across = (options.width + kTile - 1) / kTile;
     std::size_t rays = 0;
     for (int y = first; y < last; ++y)
       for (int x = 0; x < across; ++x)
-        rays += packets.trace(camera, options, tile_pixels(x, y, options.width, options.height), frame);
+        rays += packets.trace(view, options, tile_pixels(x, y, options.width, options.height), frame);
     return rays;
   }
 };
@@ -100,12 +105,12 @@ RenderResult RayTracer::render(const Camera& camera, const FrameOptions& options
   const auto start = Clock::now();
   RenderResult result;
   allocate(result.frame, options);
-  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
   const int rows = (options.height + kTile - 1) / kTile;
   std::atomic<std::size_t> count{0};
   with_threads(options.threads, [&] {
     tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
-      count += impl_->trace_tile_rows(rays, options, range.begin(), range.end(), result.frame);
+      count += impl_->trace_tile_rows(view, options, range.begin(), range.end(), result.frame);
     });
   });
   result.stats.rays = count;
@@ -115,7 +120,7 @@ RenderResult RayTracer::render(const Camera& camera, const FrameOptions& options
 
 std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& options,
                                     std::span<const std::uint32_t> pixels, Frame& frame) const {
-  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
   const std::vector<std::uint32_t> sorted = by_tiles(pixels, options.width, options.height);
   constexpr std::size_t lanes = PixelPacket::kLanes;
   const std::size_t packet_count = (sorted.size() + lanes - 1) / lanes;
@@ -132,7 +137,7 @@ std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& op
           packet.column[i] = pixel % options.width;
           packet.row[i] = pixel / options.width;
         }
-        traced += impl_->packets.trace(rays, options, packet, frame);
+        traced += impl_->packets.trace(view, options, packet, frame);
       }
       count += traced;
     });
@@ -141,24 +146,24 @@ std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& op
 }
 
 double RayTracer::bare_packet_ms(const Camera& camera, const FrameOptions& options) const {
-  const CameraRays rays = camera_rays(camera, options.width, options.height);
+  const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
   const int across = (options.width + kTile - 1) / kTile, rows = (options.height + kTile - 1) / kTile;
-  std::vector<std::vector<ReflectedPacket>> reflected(static_cast<std::size_t>(rows));
+  std::vector<std::vector<SecondaryPacket>> secondary(static_cast<std::size_t>(rows));
   double ms = 0;
   with_threads(options.threads, [&] {
     tbb::parallel_for(0, rows, [&](int y) {
       for (int x = 0; x < across; ++x)
-        if (const auto packet =
-                impl_->packets.reflect_only(rays, tile_pixels(x, y, options.width, options.height)))
-          reflected[std::size_t(y)].push_back(*packet);
+        for (const SecondaryPacket& packet :
+             impl_->packets.secondary_rays(view, tile_pixels(x, y, options.width, options.height)))
+          secondary[std::size_t(y)].push_back(packet);
     });
     const auto start = Clock::now();
     tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
       for (int y = range.begin(); y != range.end(); ++y) {
         for (int x = 0; x < across; ++x)
-          impl_->packets.query_primary(rays, tile_pixels(x, y, options.width, options.height));
-        for (const ReflectedPacket& packet : reflected[std::size_t(y)])
-          impl_->packets.query_reflected(packet);
+          impl_->packets.query_primary(view, tile_pixels(x, y, options.width, options.height));
+        for (const SecondaryPacket& packet : secondary[std::size_t(y)])
+          impl_->packets.query_secondary(packet);
       }
     });
     ms = ms_since(start);

@@ -68,6 +68,39 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
   }
 }
 
+/// Where its light does not pass, a lens counts as a body like any other.
+void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
+                         Frame& frame) {
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i] || lanes.optic[i] < 0) continue;
+    const std::size_t at =
+        std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
+    const bool passed = out.passed[i];
+    const glm::dvec3 exit = out.exit_mm[i], direction = out.beam[i].direction;
+    const double way = optics::kSelfHitDistance_mm + double(out.rays.t_max[i]);
+    frame.position[at] = !passed ? glm::vec4(glm::vec3(lanes.entry[i].position_mm), 1)
+                         : out.rays.object[i] == optics::kNoHit
+                             ? glm::vec4(glm::vec3(direction), 0)
+                             : glm::vec4(glm::vec3(exit + way * direction), 1);
+    frame.surface[at] = passed ? glm::vec3(exit) : glm::vec3(0);
+    frame.direction[at] = passed ? glm::vec3(direction) : glm::vec3(0);
+    frame.optic_id[at] = passed ? lanes.optic[i] : -1;
+  }
+}
+
+SecondaryPacket secondary_packet(const optics::RayPacket16& rays, bool others) {
+  SecondaryPacket packet;
+  std::copy_n(rays.origin_x, kLanes, packet.origin_x);
+  std::copy_n(rays.origin_y, kLanes, packet.origin_y);
+  std::copy_n(rays.origin_z, kLanes, packet.origin_z);
+  std::copy_n(rays.direction_x, kLanes, packet.direction_x);
+  std::copy_n(rays.direction_y, kLanes, packet.direction_y);
+  std::copy_n(rays.direction_z, kLanes, packet.direction_z);
+  std::copy_n(rays.t_max, kLanes, packet.t_max);
+  packet.others = others;
+  return packet;
+}
+
 }  // namespace
 
 /// All that is known of 16 pixels on their way.
@@ -81,23 +114,28 @@ struct alignas(64) PacketTracer::Packet {
   double stretch[kLanes];              ///< length of the first direction, of mirror lanes
   int optic[kLanes];                   ///< whose reflecting side the pixel shows; -1: none
   bool any_mirror;
+  LensLanes lens;
 };
 
 PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
-    : scene_(scene), rays_(rays), shading_(scene, textures) {
+    : scene_(scene), rays_(rays), shading_(scene, textures), lenses_(scene) {
   for (const optics::Optic& optic : scene.optics) {
-    mirrors_.push_back(std::make_unique<ExactMirror>(optic));
+    const bool mirror = optic.kind == optics::OpticKind::mirror;
+    mirrors_.push_back(mirror ? std::make_unique<ExactMirror>(optic) : nullptr);
     tints_.push_back(Float4{optic.reflectance.r, optic.reflectance.g, optic.reflectance.b, 1});
   }
 }
 
 void PacketTracer::optic_changed(std::size_t index) {
   shading_.optic_changed(index);
-  mirrors_[index] = std::make_unique<ExactMirror>(scene_.optics[index]);
+  if (mirrors_[index]) mirrors_[index] = std::make_unique<ExactMirror>(scene_.optics[index]);
+  lenses_.optic_changed(index);
 }
 
-void PacketTracer::primary(const CameraRays& camera, const PixelPacket& pixels, glm::dvec2 offset,
+/// Lanes that a lens stands before the nearest hit of keep none: refract() gives them their colour.
+void PacketTracer::primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset,
                            Packet& p) const {
+  const CameraRays& camera = view.camera;
   const glm::vec3 corner(camera.corner + offset.x * camera.dx + offset.y * camera.dy), dx(camera.dx),
       dy(camera.dy);
   const glm::vec3 eye(camera.eye_mm);
@@ -115,6 +153,7 @@ void PacketTracer::primary(const CameraRays& camera, const PixelPacket& pixels, 
     p.row[i] = pixels.row[i] + offset.y;
   }
   rays_.intersect16(p.first, optics::kEverything, true);
+  lenses_.find(view.entered, p.first, p.lens);
 }
 
 /// Finds the lanes that show a reflecting side. Returns whether there are any.
@@ -223,24 +262,56 @@ void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
   copy_hits(last, p.shade);
 }
 
-std::size_t PacketTracer::trace(const CameraRays& camera, const FrameOptions& options,
+/// Colours (and where asked for, geometry) of the lanes that show lenses: the sum over the wavelengths of
+/// what their rays meet. Returns the number of rays behind the lenses.
+std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pixels, Packet& p,
+                                  Frame* geometry) const {
+  std::size_t rays = 0;
+  lenses_.enter(view.camera, p.column, p.row, p.lens);
+  std::fill(std::begin(p.lens.radiance), std::end(p.lens.radiance), Float4{});
+  for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
+    RefractedLanes out;
+    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    rays_.intersect16(out.rays, optics::kEverything, true);
+    copy_hits(out.rays, out.shade);
+    for (int i = 0; i < kLanes; ++i) {
+      out.shade.active[i] = out.passed[i];
+      out.shade.footprint[i] = out.passed[i] ? float(out.beam[i].area_mm2(double(out.rays.t_max[i]))) : 0;
+      rays += out.passed[i] ? 1 : 0;
+    }
+    shading_.shade(out.shade);
+    lenses_.add_colors(sample, out, p.lens);
+    if (sample == 0 && geometry) write_lens_geometry(pixels, p.lens, out, *geometry);
+  }
+  return rays;
+}
+
+std::size_t PacketTracer::trace(const PacketView& view, const FrameOptions& options,
                                 const PixelPacket& pixels, Frame& frame) const {
+  const CameraRays& camera = view.camera;
   Packet p;
   std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   const int samples = std::max(1, options.samples);
   Float4 sum[kLanes] = {};
   std::size_t rays = 0;
   for (int sample = 0; sample < samples; ++sample) {
-    primary(camera, pixels, sample_offset(sample, samples), p);
+    primary(view, pixels, sample_offset(sample, samples), p);
     reflect(camera, p);
     set_hits(camera, p);
     shading_.shade(p.shade);
+    const bool geometry = sample == 0 && options.geometry;
+    if (geometry) write_geometry(camera, pixels, p, frame);
+    if (p.lens.any) rays += refract(view, pixels, p, geometry ? &frame : nullptr);
     for (int i = 0; i < kLanes; ++i) {
       const bool mirrored = p.optic[i] >= 0;
+      if (p.lens.any && p.lens.optic[i] >= 0) {
+        sum[i] += p.lens.radiance[i];
+        ++rays;
+        continue;
+      }
       sum[i] += mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
       rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
     }
-    if (sample == 0 && options.geometry) write_geometry(camera, pixels, p, frame);
   }
   const float share = 1 / float(samples);
   for (int i = 0; i < kLanes; ++i) {
@@ -274,43 +345,40 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
   }
 }
 
-std::optional<ReflectedPacket> PacketTracer::reflect_only(const CameraRays& camera,
+std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view,
                                                           const PixelPacket& pixels) const {
+  std::vector<SecondaryPacket> result;
   Packet p;
-  primary(camera, pixels, {0, 0}, p);
-  reflect(camera, p);
-  if (!p.any_mirror) return std::nullopt;
-  ReflectedPacket result;
-  for (int i = 0; i < kLanes; ++i) {
-    result.origin_x[i] = p.second.origin_x[i];
-    result.origin_y[i] = p.second.origin_y[i];
-    result.origin_z[i] = p.second.origin_z[i];
-    result.direction_x[i] = p.second.direction_x[i];
-    result.direction_y[i] = p.second.direction_y[i];
-    result.direction_z[i] = p.second.direction_z[i];
-    result.t_max[i] = p.optic[i] >= 0 ? std::numeric_limits<float>::infinity() : -1.0f;
+  primary(view, pixels, {0, 0}, p);
+  reflect(view.camera, p);
+  lenses_.enter(view.camera, p.column, p.row, p.lens);
+  if (p.any_mirror) result.push_back(secondary_packet(p.second, scene_.optics.size() > 1));
+  for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
+    RefractedLanes out;
+    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    result.push_back(secondary_packet(out.rays, true));
   }
   return result;
 }
 
-void PacketTracer::query_primary(const CameraRays& camera, const PixelPacket& pixels) const {
+void PacketTracer::query_primary(const PacketView& view, const PixelPacket& pixels) const {
   Packet p;
-  primary(camera, pixels, {0, 0}, p);
+  primary(view, pixels, {0, 0}, p);
 }
 
-void PacketTracer::query_reflected(const ReflectedPacket& reflected) const {
+void PacketTracer::query_secondary(const SecondaryPacket& secondary) const {
   optics::RayPacket16 packet;
   for (int i = 0; i < kLanes; ++i) {
-    packet.origin_x[i] = reflected.origin_x[i];
-    packet.origin_y[i] = reflected.origin_y[i];
-    packet.origin_z[i] = reflected.origin_z[i];
-    packet.direction_x[i] = reflected.direction_x[i];
-    packet.direction_y[i] = reflected.direction_y[i];
-    packet.direction_z[i] = reflected.direction_z[i];
+    packet.origin_x[i] = secondary.origin_x[i];
+    packet.origin_y[i] = secondary.origin_y[i];
+    packet.origin_z[i] = secondary.origin_z[i];
+    packet.direction_x[i] = secondary.direction_x[i];
+    packet.direction_y[i] = secondary.direction_y[i];
+    packet.direction_z[i] = secondary.direction_z[i];
     packet.t_min[i] = 0;
-    packet.t_max[i] = reflected.t_max[i];
+    packet.t_max[i] = secondary.t_max[i];
   }
-  rays_.intersect16(packet, scene_.optics.size() > 1 ? optics::kEverything : optics::kSurroundings, true);
+  rays_.intersect16(packet, secondary.others ? optics::kEverything : optics::kSurroundings, true);
 }
 
 }  // namespace catoptra::render

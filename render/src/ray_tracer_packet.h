@@ -2,12 +2,12 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "optics/ray_scene.h"
 #include "render/frame.h"
 #include "render/src/ray_tracer_exact.h"
+#include "render/src/ray_tracer_lens.h"
 #include "render/src/sampling.h"
 #include "render/src/shading.h"
 
@@ -19,10 +19,17 @@ struct PixelPacket {
   bool active[kLanes];
 };
 
-/// The reflected rays of a packet, for timing queries alone.
-struct alignas(64) ReflectedPacket {
+/// What is the same for all packets of a picture.
+struct PacketView {
+  CameraRays camera;
+  std::vector<optics::LensSide> entered;  ///< of each lens, by the eye; see TracedLenses
+};
+
+/// The reflected or refracted rays of a packet, for timing queries alone.
+struct alignas(64) SecondaryPacket {
   float origin_x[16], origin_y[16], origin_z[16], direction_x[16], direction_y[16], direction_z[16];
-  float t_max[16];  ///< negative: inactive
+  float t_max[16];      ///< negative: inactive
+  bool others = false;  ///< may meet optics
 };
 
 class PacketTracer {
@@ -32,26 +39,31 @@ class PacketTracer {
 
   void optic_changed(std::size_t index);
 
+  [[nodiscard]] PacketView view(const CameraRays& camera) const {
+    return {camera, lenses_.entered_from(camera.eye_mm)};
+  }
+
   /// Traces and shades all samples of the active pixels and writes them into `frame`. Returns the number of
   /// rays.
-  std::size_t trace(const CameraRays& camera, const FrameOptions& options, const PixelPacket& pixels,
+  std::size_t trace(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                     Frame& frame) const;
 
-  /// The reflected rays of the pixels' centres; nullopt where none is reflected.
-  [[nodiscard]] std::optional<ReflectedPacket> reflect_only(const CameraRays& camera,
+  /// The reflected and refracted rays of the pixels' centres.
+  [[nodiscard]] std::vector<SecondaryPacket> secondary_rays(const PacketView& view,
                                                             const PixelPacket& pixels) const;
 
   /// Bare queries, as trace() makes them.
-  void query_primary(const CameraRays& camera, const PixelPacket& pixels) const;
-  void query_reflected(const ReflectedPacket& reflected) const;
+  void query_primary(const PacketView& view, const PixelPacket& pixels) const;
+  void query_secondary(const SecondaryPacket& secondary) const;
 
  private:
   struct Packet;
 
-  void primary(const CameraRays& camera, const PixelPacket& pixels, glm::dvec2 offset, Packet& p) const;
+  void primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset, Packet& p) const;
   void reflect(const CameraRays& camera, Packet& p) const;
   bool find_mirrors(Packet& p) const;
   static void load_reflected(Packet& p);
+  std::size_t refract(const PacketView& view, const PixelPacket& pixels, Packet& p, Frame* geometry) const;
   void query_skipping_own_optic(Packet& p) const;
   void set_hits(const CameraRays& camera, Packet& p) const;
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
@@ -60,8 +72,9 @@ class PacketTracer {
   const Scene& scene_;
   const optics::RayScene& rays_;
   ShadingScene shading_;
-  std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic
-  std::vector<Float4> tints_;                          ///< reflectance of each optic
+  std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic; null: a lens
+  TracedLenses lenses_;
+  std::vector<Float4> tints_;  ///< reflectance of each optic
 };
 
 }  // namespace catoptra::render

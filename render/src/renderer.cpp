@@ -54,7 +54,8 @@ struct Renderer::Impl {
     for (std::size_t m = 0; m < scene.surroundings.size(); ++m)
       rays.add_surroundings(scene.surroundings[m],
                             make_alpha_test(scene.surroundings[m], textures.textures[m]));
-    for (const optics::Optic& optic : scene.optics) optic_objects.push_back(rays.add_optic(optic.mesh));
+    for (const optics::Optic& optic : scene.optics)
+      optic_objects.push_back(rays.add_optic(mesh_for_rays(optic)));
     rays.commit();
     tracer = std::make_unique<RayTracer>(scene, textures, rays);
   }
@@ -103,8 +104,8 @@ RenderResult Renderer::render(Mode mode, const Camera& camera, const FrameOption
 }
 
 void Renderer::optic_changed(std::size_t index) {
-  const auto& mesh = impl_->scene.optics.at(index).mesh;
-  impl_->rays.update_optic(impl_->optic_objects[index], mesh);
+  const optics::Optic& optic = impl_->scene.optics.at(index);
+  impl_->rays.update_optic(impl_->optic_objects[index], mesh_for_rays(optic));
   impl_->rays.commit();
   impl_->tracer->optic_changed(index);
   if (!impl_->gpu) return;
