@@ -97,7 +97,7 @@ TEST(LensPicture, SpectacleMagnificationOfPlusAndMinusFour) {
     const double direct_px = 2 * focal_px * std::tan(glm::radians(kHalfAngle_deg));
     const double expected = spectacle_magnification(lens, sphere_d, eye_mm);
     EXPECT_EQ(expected > 1, sphere_d > 0);
-    // Not cubemap, whose texels of 0.09 degrees are 3 % of the band.
+    // Not cubemap, whose texels of 0.1 degrees are 4 % of the band.
     for (const char* mode : {"pvrr", "hybrid", "raytrace"})
       EXPECT_NEAR(red_width(picture(folder, scene, mode)) / direct_px / expected, 1, 0.01)
           << mode << ", " << sphere_d << " D";
