@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cad_import/import.h"
+#include "cad_import/lens_faces.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -49,6 +50,9 @@ struct Expectation {
   std::optional<double> tolerance_mm;
   std::optional<double> solids, faces, triangles;
   std::string reason;  // "error": part of the message; others: part of some warning
+  // Lenses only: coordinate axis, thickness along it, mean curvatures of front and back at the vertices.
+  std::string lens_axis;
+  std::optional<double> lens_thickness_mm, lens_front_curvature, lens_back_curvature;
 };
 
 /// What an import gave.
@@ -62,7 +66,7 @@ std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> fields;
   std::istringstream stream(line);
   for (std::string field; std::getline(stream, field, '\t');) fields.push_back(field == "-" ? "" : field);
-  fields.resize(11);
+  fields.resize(15);
   return fields;
 }
 
@@ -84,7 +88,11 @@ std::vector<Expectation> read_table(const fs::path& table) {
                      number(f[6]),
                      number(f[7]),
                      number(f[8]),
-                     f[9]});
+                     f[9],
+                     f[11],
+                     number(f[12]),
+                     number(f[13]),
+                     number(f[14])});
   }
   return lines;
 }
@@ -101,25 +109,39 @@ void check_surfaces(const CadModel& model, std::vector<std::string>& complaints)
   }
 }
 
-Found import_file(const fs::path& file, const std::string& outcome, std::vector<std::string>& complaints) {
-  if (outcome == "mesh" || (outcome == "error" && !is_cad(sniff_format(file)))) {
-    const TriangleMesh mesh = import_mesh(file);
-    return {mesh.bounds, 0, 0, static_cast<double>(mesh.triangles.size()), mesh.warnings};
-  }
-  const CadModel model = import_cad(file);
-  check_surfaces(model, complaints);
-  const auto solids =
-      std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.solid; });
-  return {model.bounds, static_cast<double>(solids), static_cast<double>(model.faces.size()), 0,
-          model.warnings};
-}
-
 void compare(const std::string& what, const std::optional<double>& expected, double found, double tolerance,
              std::vector<std::string>& complaints) {
   if (!expected || std::abs(*expected - found) <= tolerance) return;
   std::ostringstream text;
   text << what << ": " << found << " instead of " << *expected;
   complaints.push_back(text.str());
+}
+
+/// The table quotes thicknesses to 0.001 mm and curvatures to 1e-6 / mm.
+void check_lens(const CadModel& model, const Expectation& expected, std::vector<std::string>& complaints) {
+  if (expected.lens_axis.empty()) return;
+  const LensGeometry lens = recognise_lens(model).geometry;
+  const int axis = expected.lens_axis[0] - 'x';
+  compare("lens axis along " + expected.lens_axis, 1, std::abs(lens.axis[axis]), 1e-9, complaints);
+  compare("lens thickness", expected.lens_thickness_mm, lens.center_thickness_mm, 1e-3, complaints);
+  const auto mean = [](const PrincipalCurvatures& k) { return 0.5 * (k.k1 + k.k2); };
+  compare("front curvature", expected.lens_front_curvature, mean(lens.front_curvature), 1e-6, complaints);
+  compare("back curvature", expected.lens_back_curvature, mean(lens.back_curvature), 1e-6, complaints);
+}
+
+Found import_file(const fs::path& file, const Expectation& expected, std::vector<std::string>& complaints) {
+  const std::string& outcome = expected.outcome;
+  if (outcome == "mesh" || (outcome == "error" && !is_cad(sniff_format(file)))) {
+    const TriangleMesh mesh = import_mesh(file);
+    return {mesh.bounds, 0, 0, static_cast<double>(mesh.triangles.size()), mesh.warnings};
+  }
+  const CadModel model = import_cad(file);
+  check_surfaces(model, complaints);
+  check_lens(model, expected, complaints);
+  const auto solids =
+      std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.solid; });
+  return {model.bounds, static_cast<double>(solids), static_cast<double>(model.faces.size()), 0,
+          model.warnings};
 }
 
 void compare(const Expectation& expected, const Found& found, std::vector<std::string>& complaints) {
@@ -158,7 +180,7 @@ int check_file(const std::vector<Expectation>& table, const fs::path& corpus, co
   const fs::path file = corpus / name;
   try {
     if (expected.outcome.empty()) expected.outcome = is_cad(sniff_format(file)) ? "cad" : "mesh";
-    const Found found = import_file(file, expected.outcome, complaints);
+    const Found found = import_file(file, expected, complaints);
     const glm::dvec3 size = found.bounds.max - found.bounds.min;
     std::cout.precision(10);
     std::cout << "size " << size.x << " x " << size.y << " x " << size.z << " mm, " << found.solids
