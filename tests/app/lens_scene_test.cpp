@@ -1,6 +1,7 @@
 // [[lens]]: what the reader makes of it, and every slip told by file, line and key.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "app/scene_file.h"
@@ -13,8 +14,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-/// The mesh of a planar square of `size` mm at height z would do as a surface, but a lens needs CAD: these
-/// are lenses of `lens make`, cut apart by their face names.
+/// One round lens of +4 D, made once; scenes of it are read in its folder.
 class LensScene : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -105,6 +105,8 @@ TEST_F(LensScene, MaterialForms) {
   EXPECT_NEAR(index("{ rgb = [1.60, 1.61, 1.62] }", optics::kLineC_nm), 1.60, 1e-12);
   EXPECT_NEAR(index("{ rgb = [1.60, 1.61, 1.62] }", optics::kLineE_nm), 1.61, 1e-12);
   EXPECT_NEAR(index("{ rgb = [1.60, 1.61, 1.62] }", optics::kLineF_nm), 1.62, 1e-12);
+  // n^2 = 1 + 1.2 L^2 / (L^2 - 0.01), Zemax formula 2.
+  EXPECT_NEAR(index("\"MYGLASS\"\ncatalogue = \"user.agf\"", 1000), std::sqrt(1 + 1.2 / 0.99), 1e-9);
   // N-BK7: 1.51680 at d (data sheet, SCHOTT).
   EXPECT_NEAR(index("{ sellmeier = [1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, "
                     "103.560653] }",
