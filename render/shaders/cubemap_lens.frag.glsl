@@ -10,12 +10,15 @@ layout(location = 8) uniform vec3 cube_center;
 #endif
 
 void main() {
+  bool open = meets_exit();
   vec3 color = vec3(0.0);
-  for (int k = 0; k < SAMPLES; ++k) color += transmitted(k, textureLod(map_color, v_shown[k].xyz, 0.0).rgb);
+  for (int k = 0; k < SAMPLES; ++k)
+    color += transmitted(open && v_shown[k].w > 0.0, k, textureLod(map_color, v_shown[k].xyz, 0.0).rgb);
   out_color = vec4(color, 1.0);
 #ifdef GEOMETRY
   vec3 direction = v_shown[0].xyz;
-  write_lens_geometry(point_on_ray(cube_center, direction, cube_center, textureLod(map_position, direction, 0.0),
-                                   textureLod(map_normal, direction, 0.0).xyz));
+  vec4 shown = point_on_ray(cube_center, direction, cube_center, textureLod(map_position, direction, 0.0),
+                            textureLod(map_normal, direction, 0.0).xyz);
+  write_lens_geometry(open && v_shown[0].w > 0.0, shown);
 #endif
 }

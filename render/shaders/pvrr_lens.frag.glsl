@@ -4,12 +4,13 @@
 // v_shown: homogeneous map coordinates (s q, t q, q).
 
 layout(location = 7) uniform vec2 map_shift;  // sub-texel offset with which this sample's map was drawn
-// The ray that map coordinates (s, t) show: origin and direction, each as value at (0, 0), change by s, change by t.
-layout(location = 8) uniform mat3 map_ray_origin;
-layout(location = 9) uniform mat3 map_ray_direction;
+layout(location = 11) uniform bool counts;    // pixels outside the map, in the first of several draws
 
 layout(binding = 2) uniform sampler2D map_color;
 #ifdef GEOMETRY
+// The ray that map coordinates (s, t) show: origin and direction, each as value at (0, 0), change by s, change by t.
+layout(location = 8) uniform mat3 map_ray_origin;
+layout(location = 9) uniform mat3 map_ray_direction;
 layout(binding = 3) uniform sampler2D map_position;
 layout(binding = 4) uniform sampler2D map_normal;
 #endif
@@ -22,27 +23,24 @@ bool in_map(vec2 st) { return all(greaterThanEqual(st, vec2(0.0))) && all(lessTh
 vec2 texel_place(vec2 st) { return vec2(st.x, 1.0 - st.y) + map_shift; }
 
 void main() {
+  bool open = meets_exit();
   vec3 color = vec3(0.0);
   for (int k = 0; k < SAMPLES; ++k) {
+    // Beyond its border the map goes on with what the border shows.
     vec2 st = v_shown[k].xy / v_shown[k].z;
-    vec3 seen;
-    if (in_map(st)) {
-      seen = textureLod(map_color, texel_place(st), 0.0).rgb;
-    } else {
-      seen = sky(map_ray_direction * vec3(1.0, st));
-      if (k == 0 && passes(k)) atomicCounterIncrement(outside_map);
-    }
-    color += transmitted(k, seen);
+    color += transmitted(open && v_shown[k].w > 0.0, k, textureLod(map_color, texel_place(st), 0.0).rgb);
   }
+  bool seen = open && v_shown[0].w > 0.0;
+  vec2 st = v_shown[0].xy / v_shown[0].z;
+  if (counts && seen && !in_map(st)) atomicCounterIncrement(outside_map);
   out_color = vec4(color, 1.0);
 #ifdef GEOMETRY
-  vec2 st = v_shown[0].xy / v_shown[0].z;
   vec3 ray = map_ray_direction * vec3(1.0, st);
   vec4 shown = vec4(normalize(ray), 0.0);
   if (in_map(st))
     shown = point_on_ray(map_ray_origin * vec3(1.0, st), ray, v_exit.xyz + origin.xyz,
                          textureLod(map_position, texel_place(st), 0.0),
                          textureLod(map_normal, texel_place(st), 0.0).xyz);
-  write_lens_geometry(shown);
+  write_lens_geometry(seen, shown);
 #endif
 }

@@ -11,17 +11,16 @@ layout(binding = 5) uniform sampler2D exit_mask;  // above 1/2 on the exit surfa
 layout(location = 3) uniform vec3 blocked_color;     // radiance where the path does not pass
 layout(location = 12) uniform mat3 weight[SAMPLES];  // of each wavelength's colour in the picture's
 
-bool passes(int k) {
-  return gl_FrontFacing && v_shown[k].w > 0.0 && textureLod(exit_mask, v_mask, 0.0).r > 0.5;
-}
+/// At all wavelengths: the exit surface is there.
+bool meets_exit() { return gl_FrontFacing && textureLod(exit_mask, v_mask, 0.0).r > 0.5; }
 
-vec3 transmitted(int k, vec3 seen) { return weight[k] * (passes(k) ? v_exit.w * seen : blocked_color); }
+vec3 transmitted(bool passes, int k, vec3 seen) { return weight[k] * (passes ? v_exit.w * seen : blocked_color); }
 
 #ifdef GEOMETRY
 /// `shown`: by the reference wavelength, which is the first.
-void write_lens_geometry(vec4 shown) {
+void write_lens_geometry(bool passes, vec4 shown) {
   // Where nothing is seen through it, the lens counts as a body like any other.
-  out_position = passes(0) ? shown : vec4(v_relative + origin.xyz, 1.0);
-  out_detail = passes(0) ? vec4(v_exit.xyz + origin.xyz, optic_id + 1.0) : vec4(0.0);
+  out_position = passes ? shown : vec4(v_relative + origin.xyz, 1.0);
+  out_detail = passes ? vec4(v_exit.xyz + origin.xyz, optic_id + 1.0) : vec4(0.0);
 }
 #endif

@@ -1,6 +1,7 @@
 #include "render/src/lens_rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace catoptra::render {
@@ -11,6 +12,12 @@ using optics::VertexHit;
 
 // Corner vertices may have none but continued neighbours.
 constexpr int kContinuedRings = 2;
+
+float way_through(const VertexHit& hit, const glm::dvec3& vertex_mm) {
+  if (!hit.faces_eye) return -1e6f;
+  const double way = glm::dot(hit.surface_point_mm - vertex_mm, hit.from_eye);
+  return static_cast<float>(hit.end == LensPathEnd::total_reflection ? -std::abs(way) : way);
+}
 
 /// Calls `edge(from, to)` for both directions of every triangle's edges.
 template <typename Edge>
@@ -77,7 +84,7 @@ std::vector<VertexHit> rays_to_border(const optics::Optic& lens, const optics::L
   for (VertexHit& hit : border) hit.faces_eye = passes(hit);
   std::vector<double> shares(hits.size(), 0.0);
   for_each_edge(mesh, [&](std::uint32_t from, std::uint32_t to) {
-    if (!passes(hits[from]) || passes(hits[to]) || !hits[to].faces_eye || openness(hits[to]) < 0) return;
+    if (!passes(hits[from]) || passes(hits[to]) || !(rays.open[0][to] > 0)) return;
     const double share = passing_share(tracer, rays.entered, indices, eye_mm, mesh.vertices[from].position_mm,
                                        mesh.vertices[to].position_mm);
     if (!(share > shares[to])) return;
@@ -103,12 +110,6 @@ std::size_t LensRays::passed() const {
   return count;
 }
 
-float openness(const VertexHit& hit) {
-  constexpr float kClosed = -1e6f;
-  if (!hit.faces_eye) return kClosed;
-  return hit.end == LensPathEnd::total_reflection ? -1.0f : 1.0f;
-}
-
 std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
   auto samples = optics::spectral_samples(lens.wavelengths);
   std::swap(samples[0], samples[samples.size() / 2]);
@@ -117,11 +118,14 @@ std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
 
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm) {
-  LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}, {}};
+  LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}, {}, {}};
+  const auto& mesh = *optics::side_of(lens, rays.entered).mesh;
   for (const optics::SpectralSample& sample : rays.samples) {
     auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, eye_mm);
-    for (int ring = 0; ring < kContinuedRings; ++ring)
-      continue_beyond_border(*optics::side_of(lens, rays.entered).mesh, hits);
+    for (int ring = 0; ring < kContinuedRings; ++ring) continue_beyond_border(mesh, hits);
+    auto& open = rays.open.emplace_back();
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      open.push_back(way_through(hits[i], mesh.vertices[i].position_mm));
     rays.hits.push_back(std::move(hits));
   }
   rays.border = rays_to_border(lens, tracer, rays, eye_mm);

@@ -17,6 +17,10 @@ struct LensRays {
   optics::LensSide entered = optics::LensSide::front;
   std::vector<optics::SpectralSample> samples;  ///< the reference wavelength first
   std::vector<std::vector<optics::VertexHit>> hits;
+  /// The way through the glass, mm, which the border of what is seen has at 0: negative where the surfaces
+  /// have crossed before or light is totally reflected, hugely so where nothing is known. That the exit
+  /// surface ends is not in it: see LensMask.
+  std::vector<std::vector<float>> open;
   /// Per vertex at the reference wavelength, only with what light passes (`faces_eye`); beside those the ray
   /// at the border: together the rays that a map has to hold.
   std::vector<optics::VertexHit> border;
@@ -26,10 +30,6 @@ struct LensRays {
 };
 
 [[nodiscard]] bool passes(const optics::VertexHit& hit);
-
-/// 1 where light passes, or would if the exit surface went on: LensMask tells where that ends. Negative where
-/// it does not: total reflection begins half-way to a vertex of value 1, all else at that vertex.
-[[nodiscard]] float openness(const optics::VertexHit& hit);
 
 /// spectral_samples() with the middle one, to which geometry belongs, first.
 [[nodiscard]] std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens);

@@ -84,7 +84,9 @@ std::vector<std::string> PvrrFrame::map_warnings() const {
   for (std::size_t i = 0; i < outside.size(); ++i)
     if (outside[i] > 0)
       warnings.push_back(scene_.optics[i].name + ": its map does not reach " + std::to_string(outside[i]) +
-                         " samples, which show the sky instead");
+                         (scene_.optics[i].kind == optics::OpticKind::lens
+                              ? " samples, which show the map's border instead"
+                              : " samples, which show the sky instead"));
   return warnings;
 }
 
@@ -131,7 +133,8 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
   if (optic.kind == optics::OpticKind::lens) {
     patch.lens().draw(camera, target, geometry, LensLook::map, lens_programs_, optic, index,
-                      scene_.environment.ambient, [&] { patch.set_map(offset_px, geometry); });
+                      scene_.environment.ambient,
+                      [&](bool with_geometry) { patch.set_map(offset_px, with_geometry); });
     return;
   }
   glUseProgram(mirror_program(geometry).id());

@@ -25,8 +25,8 @@ class PvrrFrame {
   void optic_changed(std::size_t index);
 
   /// Times: "trace" (vertex rays, viewpoints, map coordinates), "pass1", "pass2", "readback", "total". A
-  /// warning tells how many pixels of an optic its map does not reach; they show the sky in the outgoing
-  /// direction.
+  /// warning tells how many pixels of an optic its map does not reach; in a mirror they show the sky in the
+  /// outgoing direction, in a lens the map's border.
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
                                     RasterPicture& picture);
 

@@ -14,6 +14,10 @@ namespace {
 using optics::OpticKind;
 using optics::VertexHit;
 
+// Border of a lens map, as a share of its width: room for the wavelengths whose border is not sought, and for
+// corners.
+constexpr double kLensMargin = 0.02;
+
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
 constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
 constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
@@ -121,7 +125,8 @@ void PvrrPatch::trace_lens(const glm::dvec3& eye_mm) {
   traced_rays_ = lens_rays_.passed();
   faces_eye_ = traced_rays_ > 0;
   if (!faces_eye_) return;
-  fitted_ = optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds_);
+  fitted_ =
+      optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds_, kLensMargin);
   for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
 }
 
@@ -187,8 +192,8 @@ void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
   const glm::dvec2 shift = -map_offset(offset_px) / glm::dvec2(target.size());
   glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
   glBindTextureUnit(kMapColorUnit, target.color().id());
-  if (geometry || optic_.kind == OpticKind::lens) set_map_rays(view_);
   if (!geometry) return;
+  set_map_rays(view_);
   glBindTextureUnit(kMapPositionUnit, target.position().id());
   glBindTextureUnit(kMapDetailUnit, target.detail().id());
 }

@@ -34,7 +34,7 @@ class PvrrPatch {
   /// Pass 1, unless the map is there already. An `overlay` (or null) is drawn into it.
   void draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
-  /// For the program in use: the map of pass 2, with the map rays that geometry and lenses need.
+  /// For the program in use: the map of pass 2, with the map rays that geometry needs.
   void set_map(glm::dvec2 offset_px, bool geometry) const;
 
   [[nodiscard]] bool faces_eye() const { return faces_eye_; }

@@ -12,7 +12,7 @@ namespace {
 // As in raster_lens.vert.glsl and raster_lens.glsl.
 constexpr GLuint kExitAttribute = 2, kMaskAttribute = 3, kShownAttribute = 4;
 constexpr GLuint kMaskUnit = 5;
-constexpr GLint kBlockedColor = 3, kOpticId = 6, kWeight = 12;
+constexpr GLint kBlockedColor = 3, kOpticId = 6, kCounts = 11, kWeight = 12;
 
 // Wavelengths per draw: attributes and interpolants for this many are there in any OpenGL 4.5.
 constexpr std::size_t kSamplesPerDraw = 4;
@@ -59,7 +59,7 @@ void RasterLens::set_shown(const RasterOptic& side, const LensMask& mask, const 
     values.reserve(vertices * count);
     for (std::size_t i = 0; i < vertices; ++i)
       for (std::size_t k = first; k < first + count; ++k)
-        values.emplace_back(glm::vec3(shown[k][i]), openness(rays.hits[k][i]));
+        values.emplace_back(glm::vec3(shown[k][i]), rays.open[k][i]);
     batch.shown = make_static_buffer(std::as_bytes(std::span(values)));
     batch.array = side.make_array();
     bind_attributes(batch.array, 1, exits_, sizeof(Exit),
@@ -75,7 +75,7 @@ void RasterLens::set_shown(const RasterOptic& side, const LensMask& mask, const 
 
 void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool geometry, LensLook look,
                       LensPrograms& programs, const optics::Optic& lens, std::size_t index, float ambient,
-                      const std::function<void()>& set_look) const {
+                      const std::function<void(bool geometry)>& set_look) const {
   const glm::vec3 blocked_color = ambient * lens.rim_color;
   for (std::size_t b = 0; b < batches_.size(); ++b) {
     const Batch& batch = batches_[b];
@@ -89,9 +89,10 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
     RasterScene::set_mesh_origin(camera, side_->center_mm());
     glUniform3f(kBlockedColor, blocked_color.x, blocked_color.y, blocked_color.z);
     glUniform1f(kOpticId, float(index));
+    if (look == LensLook::map) glUniform1i(kCounts, b == 0);
     glUniformMatrix3fv(kWeight, GLsizei(batch.weights.size()), GL_FALSE, &batch.weights[0][0].x);
     glBindTextureUnit(kMaskUnit, mask_->texture().id());
-    set_look();
+    set_look(geometry && b == 0);
     side_->draw_triangles(batch.array);
   }
   if (batches_.size() < 2) return;

@@ -42,7 +42,7 @@ class RasterLens {
   /// sample. `set_look` sets the uniforms and textures of the look for the program in use.
   void draw(const RasterView& camera, const RasterTarget& target, bool geometry, LensLook look,
             LensPrograms& programs, const optics::Optic& lens, std::size_t index, float ambient,
-            const std::function<void()>& set_look) const;
+            const std::function<void(bool geometry)>& set_look) const;
 
  private:
   struct Batch {
