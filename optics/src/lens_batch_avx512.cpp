@@ -11,17 +11,6 @@ typedef std::int64_t Index __attribute__((vector_size(64)));
 using Mask = Index;
 constexpr int kLanes = 8;
 
-inline Real splat(double x) {
-  return Real{} + x;
-}
-inline Real load(const double* from, std::size_t left) {
-  Real x;
-  for (int i = 0; i < kLanes; ++i) x[i] = from[std::size_t(i) < left ? std::size_t(i) : left - 1];
-  return x;
-}
-inline void store(double* to, const Real& x, std::size_t left) {
-  for (int i = 0; i < kLanes && std::size_t(i) < left; ++i) to[i] = x[i];
-}
 inline Real root(const Real& x) {
   return _mm512_maskz_sqrt_pd(0xff, x);
 }
@@ -31,15 +20,8 @@ inline Real gather(const double* base, const Index& i) {
 inline bool all(const Mask& m) {
   return _mm512_movepi64_mask(__m512i(m)) == 0xff;
 }
-inline double lane(const Real& x, int i) {
-  return x[i];
-}
-inline std::int64_t lane(const Index& x, int i) {
-  return x[i];
-}
-inline void set_lane(Index& x, int i, std::int64_t value) {
-  x[i] = value;
-}
+
+#include "optics/src/lens_batch_vector.inl"
 
 #include "optics/src/lens_batch_kernel.inl"
 
