@@ -4,12 +4,12 @@
 #include <glm/trigonometric.hpp>
 #include <set>
 
-#include "app/src/coating.h"
 #include "app/src/mirror_faces.h"
 #include "app/src/nearest_name.h"
 #include "app/src/scene_context.h"
 #include "cad_import/error.h"
 #include "cad_import/import.h"
+#include "optics/coating.h"
 #include "tessellate/optic_mesh.h"
 
 namespace catoptra::app {
@@ -140,8 +140,8 @@ std::optional<glm::vec3> read_reflectance(const TomlTable& table) {
   if (node->is_number()) return glm::vec3(static_cast<float>(*table.number("reflectance", {0, 1})));
   const auto name = table.text("reflectance");
   std::vector<std::string> known;
-  for (const CoatingEntry& coating : coatings()) {
-    if (coating.name == *name) return coating_reflectance(coating);
+  for (const optics::Coating& coating : optics::built_in_coatings()) {
+    if (coating.name == *name) return glm::vec3(coating.reflectance_rgb());
     known.emplace_back(coating.name);
   }
   table.fail("reflectance", "unknown coating '" + *name + "'", hint_for_unknown(*name, known));
