@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "optics/vertex_hits.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -68,6 +69,23 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
   }
 }
 
+/// Area across the ray of the pixel's beam where it hits, mm^2. Source: Igehy 1999, 3.
+CATOPTRA_VECTOR_CLONES void set_footprints(RefractedLanes& out) {
+  const BeamLanes& b = out.beams;
+  for (int i = 0; i < kLanes; ++i) {
+    const double way = out.rays.t_max[i];
+    const double rx = b.point_right.x[i] + way * b.direction_right.x[i],
+                 ry = b.point_right.y[i] + way * b.direction_right.y[i],
+                 rz = b.point_right.z[i] + way * b.direction_right.z[i];
+    const double dx = b.point_down.x[i] + way * b.direction_down.x[i],
+                 dy = b.point_down.y[i] + way * b.direction_down.y[i],
+                 dz = b.point_down.z[i] + way * b.direction_down.z[i];
+    const double area = (ry * dz - rz * dy) * b.direction.x[i] + (rz * dx - rx * dz) * b.direction.y[i] +
+                        (rx * dy - ry * dx) * b.direction.z[i];
+    out.shade.footprint[i] = out.passed[i] ? float(std::abs(area)) : 0;
+  }
+}
+
 /// Where its light does not pass, a lens counts as a body like any other.
 void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
                          Frame& frame) {
@@ -76,9 +94,9 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
     const std::size_t at =
         std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
     const bool passed = out.passed[i];
-    const glm::dvec3 exit = out.exit_mm[i], direction = out.beam[i].direction;
+    const glm::dvec3 exit = out.beams.point.at(i), direction = out.beams.direction.at(i);
     const double way = optics::kSelfHitDistance_mm + double(out.rays.t_max[i]);
-    frame.position[at] = !passed ? glm::vec4(glm::vec3(lanes.entry[i].position_mm), 1)
+    frame.position[at] = !passed ? glm::vec4(glm::vec3(lanes.entry.point.at(i)), 1)
                          : out.rays.object[i] == optics::kNoHit
                              ? glm::vec4(glm::vec3(direction), 0)
                              : glm::vec4(glm::vec3(exit + way * direction), 1);
@@ -271,12 +289,12 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
   std::fill(std::begin(p.lens.radiance), std::end(p.lens.radiance), Float4{});
   for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
     RefractedLanes out;
-    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    lenses_.refract(p.lens, sample, out);
     rays_.intersect16(out.rays, optics::kEverything, true);
     copy_hits(out.rays, out.shade);
+    set_footprints(out);
     for (int i = 0; i < kLanes; ++i) {
       out.shade.active[i] = out.passed[i];
-      out.shade.footprint[i] = out.passed[i] ? float(out.beam[i].area_mm2(double(out.rays.t_max[i]))) : 0;
       rays += out.passed[i] ? 1 : 0;
     }
     shading_.shade(out.shade);
@@ -355,7 +373,7 @@ std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view
   if (p.any_mirror) result.push_back(secondary_packet(p.second, scene_.optics.size() > 1));
   for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
     RefractedLanes out;
-    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    lenses_.refract(p.lens, sample, out);
     result.push_back(secondary_packet(out.rays, true));
   }
   return result;
