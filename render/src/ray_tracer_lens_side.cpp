@@ -149,6 +149,18 @@ CATOPTRA_VECTOR_CLONES void refract_beams(const BeamLanes& beams, const MetLanes
   }
 }
 
+CATOPTRA_VECTOR_CLONES void set_areas(const BeamLanes& beams, const float (&way_mm)[kLanes],
+                                      float (&area_mm2)[kLanes]) {
+  for (int i = 0; i < kLanes; ++i) {
+    const double way = way_mm[i];
+    const Vec right = load(beams.point_right, i) + way * load(beams.direction_right, i),
+              down = load(beams.point_down, i) + way * load(beams.direction_down, i);
+    const Vec across{right.y * down.z - right.z * down.y, right.z * down.x - right.x * down.z,
+                     right.x * down.y - right.y * down.x};
+    area_mm2[i] = float(std::abs(dot(across, load(beams.direction, i))));
+  }
+}
+
 void meet_vertex(const tessellate::OpticVertex& vertex, const BeamLanes& beams, int lane, MetLanes& met) {
   const glm::dvec3 d = beams.direction.at(lane), n = vertex.normal,
                    direction2 = glm::cross(n, vertex.direction1);

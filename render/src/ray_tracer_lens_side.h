@@ -57,6 +57,10 @@ void aim_beams(const CameraRays& camera, const double (&column)[LaneVectors::kLa
 void refract_beams(const BeamLanes& beams, const MetLanes& met, const double (&eta)[LaneVectors::kLanes],
                    RefractedBeams& out);
 
+/// Area across each beam, mm^2, at `way_mm` along it. Source: Igehy 1999, 3.
+void set_areas(const BeamLanes& beams, const float (&way_mm)[LaneVectors::kLanes],
+               float (&area_mm2)[LaneVectors::kLanes]);
+
 /// One lane's point of a surface, from its own evaluation: as meet() leaves it.
 void meet_vertex(const tessellate::OpticVertex& vertex, const BeamLanes& beams, int lane, MetLanes& met);
 

@@ -69,23 +69,6 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
   }
 }
 
-/// Area across the ray of the pixel's beam where it hits, mm^2. Source: Igehy 1999, 3.
-CATOPTRA_VECTOR_CLONES void set_footprints(RefractedLanes& out) {
-  const BeamLanes& b = out.beams;
-  for (int i = 0; i < kLanes; ++i) {
-    const double way = out.rays.t_max[i];
-    const double rx = b.point_right.x[i] + way * b.direction_right.x[i],
-                 ry = b.point_right.y[i] + way * b.direction_right.y[i],
-                 rz = b.point_right.z[i] + way * b.direction_right.z[i];
-    const double dx = b.point_down.x[i] + way * b.direction_down.x[i],
-                 dy = b.point_down.y[i] + way * b.direction_down.y[i],
-                 dz = b.point_down.z[i] + way * b.direction_down.z[i];
-    const double area = (ry * dz - rz * dy) * b.direction.x[i] + (rz * dx - rx * dz) * b.direction.y[i] +
-                        (rx * dy - ry * dx) * b.direction.z[i];
-    out.shade.footprint[i] = out.passed[i] ? float(std::abs(area)) : 0;
-  }
-}
-
 /// Where its light does not pass, a lens counts as a body like any other.
 void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
                          Frame& frame) {
@@ -292,9 +275,10 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
     lenses_.refract(p.lens, sample, out);
     rays_.intersect16(out.rays, optics::kEverything, true);
     copy_hits(out.rays, out.shade);
-    set_footprints(out);
+    set_areas(out.beams, out.rays.t_max, out.shade.footprint);
     for (int i = 0; i < kLanes; ++i) {
       out.shade.active[i] = out.passed[i];
+      if (!out.passed[i]) out.shade.footprint[i] = 0;
       rays += out.passed[i] ? 1 : 0;
     }
     shading_.shade(out.shade);
