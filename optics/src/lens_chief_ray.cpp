@@ -1,0 +1,63 @@
+#include "optics/src/lens_chief_ray.h"
+
+#include <glm/geometric.hpp>
+
+namespace catoptra::optics {
+
+cad_import::SurfaceDerivatives ChiefRayTracer::derivatives(LensSide side, const ExactHit& hit) const {
+  return side_of(lens_, side).faces[std::size_t(hit.face)].surface->d2(hit.uv.x, hit.uv.y);
+}
+
+ChiefRay ChiefRayTracer::trace(const Ray& ray, ChiefRayKind kind, const LensIndices& indices,
+                               double object_distance_mm) const {
+  LensPath path = tracer_.trace(ray, LensSide::back, indices);
+  if (path.end == LensPathEnd::missed) return {};
+  ChiefRay chief{path.end, path.entry.position_mm, ray.direction, {}, {}};
+  if (kind == ChiefRayKind::along_the_normal) {
+    chief.eye_side = -path.entry.normal;
+    path = tracer_.trace_from({chief.back_mm - chief.eye_side, chief.eye_side}, path.entry, LensSide::back,
+                              indices);
+    chief.end = path.end;
+  }
+  if (chief.end != LensPathEnd::passed) return chief;
+  chief.object_side = path.outside;
+
+  // The light runs the other way: from the object through the front, across the lens, out at the back.
+  const double into = indices.around / indices.lens;
+  const Wavefront arriving = spherical_wavefront(-path.outside, object_distance_mm);
+  const Wavefront entered =
+      refracted(arriving, -path.outside, -path.inside, into, derivatives(LensSide::front, path.exit));
+  const Wavefront crossed =
+      transferred(entered, -path.inside, glm::distance(path.entry.position_mm, path.exit.position_mm));
+  chief.wave =
+      refracted(crossed, -path.inside, -chief.eye_side, 1 / into, derivatives(LensSide::back, path.entry));
+  return chief;
+}
+
+// A pencil from the ray's origin is a spherical wave: a displacement a across the ray at its surface point
+// changes the direction by Q a, and displacements at a surface are taken along the rays onto its tangent
+// plane.
+std::optional<ChiefRayTracer::Turning> ChiefRayTracer::turning(const Ray& ray, const glm::dvec3& x,
+                                                               const glm::dvec3& y,
+                                                               const LensIndices& indices) const {
+  const LensPath path = tracer_.trace(ray, LensSide::back, indices);
+  if (path.end != LensPathEnd::passed) return std::nullopt;
+  const double into = indices.around / indices.lens;
+  const double before = glm::distance(ray.origin_mm, path.entry.position_mm),
+               across = glm::distance(path.entry.position_mm, path.exit.position_mm);
+  const Wavefront inside = refracted(spherical_wavefront(ray.direction, before), ray.direction, path.inside,
+                                     into, derivatives(LensSide::back, path.entry));
+  const Wavefront outside = refracted(transferred(inside, path.inside, across), path.inside, path.outside,
+                                      1 / into, derivatives(LensSide::front, path.exit));
+  const auto onto = [](const glm::dvec3& a, const glm::dvec3& d, const glm::dvec3& n) {
+    return a - d * (glm::dot(n, a) / glm::dot(n, d));
+  };
+  const auto turned = [&](const glm::dvec3& a) {
+    const glm::dvec3 back = onto(before * a, ray.direction, path.entry.normal);
+    const glm::dvec3 front = onto(back + across * (inside.curvature * back), path.inside, path.exit.normal);
+    return outside.curvature * front;
+  };
+  return Turning{path.outside, turned(x), turned(y)};
+}
+
+}  // namespace catoptra::optics
