@@ -200,7 +200,8 @@ void take_reference(Setting& setting, const Ray& at_vertex, LensEvaluation& resu
 }
 
 void for_each_point(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& measure) {
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : int(threads));
+  const std::size_t most = std::size_t(tbb::this_task_arena::max_concurrency());
+  tbb::task_arena arena(int(threads == 0 ? most : std::min(threads, most)));
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 16), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i) measure(i);

@@ -8,10 +8,11 @@ namespace {
 
 constexpr double kNoCylinder_d = 1e-9;
 
-// Axes are angles modulo pi, written as 0 < axis <= pi.
+// Axes are angles modulo pi, written as 0 < axis <= pi: what lies within rounding above 0 is pi too.
+constexpr double kNoAngle_rad = 1e-9;
 double axis_in_range(double axis_rad) {
   const double axis = axis_rad - std::numbers::pi * std::floor(axis_rad / std::numbers::pi);
-  return axis > 0 ? axis : std::numbers::pi;
+  return axis > kNoAngle_rad ? axis : std::numbers::pi;
 }
 
 }  // namespace

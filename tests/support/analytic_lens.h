@@ -35,14 +35,13 @@ class BackSurface : public cad_import::ExactSurface {
   double z_;
 };
 
-/// A square lens of `width_mm` between two height fields with u = x and v = y, of index 1.5 in air; `back` is
-/// moved down by the thickness.
-inline optics::Optic lens_between(std::shared_ptr<const cad_import::ExactSurface> front,
-                                  std::shared_ptr<const cad_import::ExactSurface> back, double thickness_mm,
-                                  double width_mm, int per_side) {
+/// A square lens of `width_mm` around the z axis whose sides are height fields with u = x and v = y, of
+/// index 1.5 in air. Normals point out of it.
+inline optics::Optic lens_of_sides(std::shared_ptr<const cad_import::ExactSurface> front,
+                                   std::shared_ptr<const cad_import::ExactSurface> back, double width_mm,
+                                   int per_side) {
   auto lens = rectangular_mirror(std::move(front), width_mm, width_mm, per_side, per_side);
-  auto behind = rectangular_mirror(std::make_shared<BackSurface>(std::move(back), -thickness_mm), width_mm,
-                                   width_mm, per_side, per_side);
+  auto behind = rectangular_mirror(std::move(back), width_mm, width_mm, per_side, per_side);
   for (auto& triangle : behind.mesh.triangles) {  // counter-clockwise as seen from -z
     std::swap(triangle.vertices[1], triangle.vertices[2]);
     std::swap(triangle.uv[1], triangle.uv[2]);
@@ -52,6 +51,14 @@ inline optics::Optic lens_between(std::shared_ptr<const cad_import::ExactSurface
   lens.back = {std::move(behind.faces), std::move(behind.mesh)};
   lens.medium = optics::constant_medium(1.5);
   return lens;
+}
+
+/// The same between two surfaces with normals towards +z of which the back is moved down by the thickness.
+inline optics::Optic lens_between(std::shared_ptr<const cad_import::ExactSurface> front,
+                                  std::shared_ptr<const cad_import::ExactSurface> back, double thickness_mm,
+                                  double width_mm, int per_side) {
+  return lens_of_sides(std::move(front), std::make_shared<BackSurface>(std::move(back), -thickness_mm),
+                       width_mm, per_side);
 }
 
 /// The same of two spheres, its front vertex at the origin and its front towards +z. Radii in mm are
