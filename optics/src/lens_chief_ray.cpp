@@ -8,29 +8,40 @@ cad_import::SurfaceDerivatives ChiefRayTracer::derivatives(LensSide side, const 
   return side_of(lens_, side).faces[std::size_t(hit.face)].surface->d2(hit.uv.x, hit.uv.y);
 }
 
-ChiefRay ChiefRayTracer::trace(const Ray& ray, ChiefRayKind kind, const LensIndices& indices,
-                               double object_distance_mm) const {
-  LensPath path = tracer_.trace(ray, LensSide::back, indices);
+ChiefRay ChiefRayTracer::trace(const Ray& ray, const ChiefRayTask& task) const {
+  LensPath path = tracer_.trace(ray, LensSide::back, task.indices);
   if (path.end == LensPathEnd::missed) return {};
-  ChiefRay chief{path.end, path.entry.position_mm, ray.direction, {}, {}};
-  if (kind == ChiefRayKind::along_the_normal) {
-    chief.eye_side = -path.entry.normal;
-    path = tracer_.trace_from({chief.back_mm - chief.eye_side, chief.eye_side}, path.entry, LensSide::back,
+  ChiefRay chief;
+  chief.back_mm = path.entry.position_mm;
+  chief.eye_side = ray.direction;
+  const ExactHit entry = path.entry;
+  const auto path_at = [&](const LensIndices& indices) {
+    return tracer_.trace_from({chief.back_mm - chief.eye_side, chief.eye_side}, entry, LensSide::back,
                               indices);
-    chief.end = path.end;
+  };
+  if (task.kind == ChiefRayKind::along_the_normal) {
+    chief.eye_side = -entry.normal;
+    path = path_at(task.indices);
   }
+  chief.end = path.end;
   if (chief.end != LensPathEnd::passed) return chief;
   chief.object_side = path.outside;
 
   // The light runs the other way: from the object through the front, across the lens, out at the back.
-  const double into = indices.around / indices.lens;
-  const Wavefront arriving = spherical_wavefront(-path.outside, object_distance_mm);
+  const double into = task.indices.around / task.indices.lens;
+  const Wavefront arriving = spherical_wavefront(-path.outside, task.object_distance_mm);
   const Wavefront entered =
       refracted(arriving, -path.outside, -path.inside, into, derivatives(LensSide::front, path.exit));
   const Wavefront crossed =
-      transferred(entered, -path.inside, glm::distance(path.entry.position_mm, path.exit.position_mm));
+      transferred(entered, -path.inside, glm::distance(entry.position_mm, path.exit.position_mm));
   chief.wave =
-      refracted(crossed, -path.inside, -chief.eye_side, 1 / into, derivatives(LensSide::back, path.entry));
+      refracted(crossed, -path.inside, -chief.eye_side, 1 / into, derivatives(LensSide::back, entry));
+
+  if (!task.coloured) return chief;
+  const LensPath f = path_at(task.indices_f), c = path_at(task.indices_c);
+  chief.coloured = f.end == LensPathEnd::passed && c.end == LensPathEnd::passed;
+  chief.object_side_f = f.outside;
+  chief.object_side_c = c.outside;
   return chief;
 }
 

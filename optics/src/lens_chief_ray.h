@@ -1,10 +1,9 @@
 // One chief ray of a lens: traced backwards from the eye, with the wave that the object sends along it.
 #pragma once
 
-#include <glm/mat2x2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
-#include "optics/lens_evaluation.h"
 #include "optics/lens_path.h"
 #include "optics/wavefront.h"
 
@@ -17,7 +16,9 @@ struct ChiefRay {
   glm::dvec3 back_mm{0};   ///< where it meets the back surface
   glm::dvec3 eye_side{0};  ///< unit directions from the eye to the object
   glm::dvec3 object_side{0};
-  Wavefront wave;  ///< of the light that leaves the back surface along -eye_side
+  Wavefront wave;         ///< of the light that leaves the back surface along -eye_side
+  bool coloured = false;  ///< the next two are there: asked for, and passed
+  glm::dvec3 object_side_f{0}, object_side_c{0};
 };
 
 /// How a ray that comes from the eye's side goes on from the back surface.
@@ -26,14 +27,22 @@ enum class ChiefRayKind {
   along_the_normal,  ///< along the normal of the back surface: the focimeter
 };
 
+/// What is asked of every ray.
+struct ChiefRayTask {
+  ChiefRayKind kind = ChiefRayKind::straight;
+  LensIndices indices;
+  double object_distance_mm =
+      kInfinity;          ///< of a point that sends the light, from the front; infinite: a plane wave
+  bool coloured = false;  ///< also the object-side directions at two other indices
+  LensIndices indices_f, indices_c;
+};
+
 /// Traces chief rays through one lens, one by one.
 class ChiefRayTracer {
  public:
   explicit ChiefRayTracer(const Optic& lens) : lens_(lens), tracer_(lens) {}
 
-  /// `object_distance_mm`: of a point that sends the light, from the front surface; infinite: a plane wave.
-  [[nodiscard]] ChiefRay trace(const Ray& ray, ChiefRayKind kind, const LensIndices& indices,
-                               double object_distance_mm) const;
+  [[nodiscard]] ChiefRay trace(const Ray& ray, const ChiefRayTask& task) const;
 
   /// How the object-side direction turns when the eye-side ray turns about its origin: columns are the
   /// derivatives by turns along `x` and `y`, which are across the ray. Where the ray passes.
