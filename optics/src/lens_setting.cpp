@@ -38,7 +38,8 @@ void must_pass(bool passed, const std::string& name, const char* reason) {
 }
 
 double cylinder_of(const PowerMatrix& m) {
-  return 2 * std::hypot(0.5 * (m.xx - m.yy), m.xy);
+  const double difference = m.xx - m.yy;
+  return std::sqrt(difference * difference + 4 * m.xy * m.xy);
 }
 
 // Power along the unit vector `m` of the matrix's axes.

@@ -6,10 +6,6 @@
 
 namespace catoptra::optics {
 
-glm::dvec3 Axes::from_model(const glm::dvec3& v) const {
-  return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)};
-}
-
 Axes lens_axes(const LensFrame& frame) {
   return {frame.x, frame.y, frame.z};
 }
@@ -38,6 +34,7 @@ glm::dvec3 gaze_direction(const Axes& axes, const glm::dvec2& gaze_rad) {
 
 glm::dvec2 gaze_of(const Axes& axes, const glm::dvec3& d) {
   const glm::dvec3 v = axes.from_model(d);
+  if (v.z > 0) return {std::atan(v.x / v.z), std::atan(v.y / v.z)};  // half the time of what follows
   return {std::atan2(v.x, v.z), std::atan2(v.y, v.z)};
 }
 

@@ -1,7 +1,7 @@
 // Where the eye is, and which way it looks, in model coordinates.
 #pragma once
 
-#include <glm/mat2x2.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -14,7 +14,9 @@ struct Axes {
   glm::dvec3 x, y, z;
 
   [[nodiscard]] glm::dvec3 to_model(const glm::dvec3& v) const { return v.x * x + v.y * y + v.z * z; }
-  [[nodiscard]] glm::dvec3 from_model(const glm::dvec3& v) const;
+  [[nodiscard]] glm::dvec3 from_model(const glm::dvec3& v) const {
+    return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)};
+  }
 };
 
 [[nodiscard]] Axes lens_axes(const LensFrame& frame);

@@ -17,6 +17,7 @@
 #include "optics/wavefront.h"
 #include "tests/support/analytic_lens.h"
 #include "tests/support/aspheric_surface.h"
+#include "tests/support/bspline_lens.h"
 
 namespace catoptra::optics {
 namespace {
@@ -250,30 +251,60 @@ TEST(LensEvaluationProperty, TheOtherEyesLensIsTheMirrorImage) {
   }
 }
 
-// Every bit of a map is the same on one thread and on three.
+// A gaze and the point of the back surface that it meets are the same place.
+TEST(LensEvaluationProperty, GazesAndTheirPointsAgree) {
+  Random random(10);
+  for (int k = 0; k < 40; ++k) {
+    const bool spline = k % 2 == 0;
+    const Optic lens = spline ? test::bspline_lens({.thickness_mm = kThickness_mm, .width_mm = 50})
+                              : lens_of(random.side(), random.side());
+    const LensEvaluator evaluator(lens, kFrame);
+    EvaluationOptions options = worn(random);
+    for (const auto mode : {EvaluationMode::as_worn, EvaluationMode::lensmeter}) {
+      options.mode = mode;
+      const glm::dvec2 gaze = random.gaze();
+      const LensPoint by_gaze = evaluator.at_gaze(std::span(&gaze, 1), options).points[0];
+      if (by_gaze.end != LensPathEnd::passed) continue;
+      const LensPoint by_point = evaluator.at_points(std::span(&by_gaze.point_mm, 1), options).points[0];
+      EXPECT_LT(glm::distance(by_point.gaze_rad, gaze), 1e-10);
+      EXPECT_LT(glm::distance(by_point.point_mm, by_gaze.point_mm), 1e-8);
+      expect_same(by_gaze, by_point);
+    }
+  }
+}
+
+void expect_same_bits(const LensPoint& a, const LensPoint& b) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  ASSERT_EQ(a.end, b.end);
+  for (const auto& [x, y] : {std::pair{a.power.xx, b.power.xx},
+                             {a.power.xy, b.power.xy},
+                             {a.power.yy, b.power.yy},
+                             {a.prism.x, b.prism.x},
+                             {a.prism.y, b.prism.y},
+                             {a.distortion, b.distortion},
+                             {a.transverse_colour, b.transverse_colour},
+                             {a.point_mm.x, b.point_mm.x}})
+    ASSERT_EQ(bits(x), bits(y));
+}
+
+// Every bit of a map is the same on one thread and on as many as there are, several rays at once or one by
+// one.
 TEST(LensEvaluationProperty, ThreadsChangeNoBit) {
   Random random(9);
-  const Optic lens = lens_of(random.side(), random.side());
-  const LensEvaluator evaluator(lens, kFrame);
   const auto grid = gaze_grid(0.7, 0.02);
-  EvaluationOptions options = worn(random);
-  options.threads = 1;
-  const auto one = evaluator.at_gaze(grid, options);
-  options.threads = 3;
-  const auto three = evaluator.at_gaze(grid, options);
-  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const LensPoint &a = one.points[i], &b = three.points[i];
-    ASSERT_EQ(a.end, b.end);
-    for (const auto& [x, y] : {std::pair{a.power.xx, b.power.xx},
-                               {a.power.xy, b.power.xy},
-                               {a.power.yy, b.power.yy},
-                               {a.prism.x, b.prism.x},
-                               {a.prism.y, b.prism.y},
-                               {a.distortion, b.distortion},
-                               {a.transverse_colour, b.transverse_colour},
-                               {a.point_mm.x, b.point_mm.x}})
-      ASSERT_EQ(bits(x), bits(y)) << i;
+  for (const bool spline : {false, true}) {
+    Optic lens = spline ? test::bspline_lens({.thickness_mm = kThickness_mm, .width_mm = 50})
+                        : lens_of(random.side(), random.side());
+    lens.medium = abbe_medium(1.6, 36);
+    const LensEvaluator evaluator(lens, kFrame);
+    EvaluationOptions options = worn(random);
+    options.threads = 1;
+    const auto one = evaluator.at_gaze(grid, options);
+    options.threads = 0;
+    for (int run = 0; run < 3; ++run) {
+      const auto all = evaluator.at_gaze(grid, options);
+      for (std::size_t i = 0; i < grid.size(); ++i) expect_same_bits(one.points[i], all.points[i]);
+    }
   }
 }
 
