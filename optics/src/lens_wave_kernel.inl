@@ -76,35 +76,11 @@ inline Bent bent_block(const Surface& s, const Coefficients& c, const Real& x, c
           rate_v * rate_v * at.vv};
 }
 
-// As evaluate().
 inline Bent bent_at(const Surface& s, const Real& u, const Real& v) {
-  const std::int32_t size = 4 * (s.degree_u + 1) * (s.degree_v + 1);
-  const std::int32_t su = span_of(s.u, lane(u, 0)), sv = span_of(s.v, lane(v, 0));
-  const Mask one_span = (u >= splat(s.u.low[su])) & (u < splat(s.u.high[su])) & (v >= splat(s.v.low[sv])) &
-                        (v < splat(s.v.high[sv]));
-  if (kLanes == 1 || all(one_span)) {
-    const Real rate_u = splat(s.u.rate[su]), rate_v = splat(s.v.rate[sv]);
-    const Broadcast c{s.coefficients + std::size_t(su * s.spans_v + sv) * std::size_t(size)};
-    return bent_block(s, c, (u - splat(s.u.middle[su])) * rate_u, (v - splat(s.v.middle[sv])) * rate_v,
-                      rate_u, rate_v);
-  }
-  Index spans_u{}, spans_v{};
-  for (int i = 0; i < kLanes; ++i) {
-    set_lane(spans_u, i, span_of(s.u, lane(u, i)));
-    set_lane(spans_v, i, span_of(s.v, lane(v, i)));
-  }
-  const Index offset = (spans_u * s.spans_v + spans_v) * size;
-  const Real rate_u = gather(s.u.rate, spans_u), rate_v = gather(s.v.rate, spans_v);
-  const Real x = (u - gather(s.u.middle, spans_u)) * rate_u, y = (v - gather(s.v.middle, spans_v)) * rate_v;
-  const std::int64_t first = lane(offset, 0);
-  std::int64_t second = first;
-  for (int i = 1; i < kLanes; ++i)
-    if (lane(offset, i) != first) second = lane(offset, i);
-  const Mask in_first = offset == first;
-  if (all(in_first | (offset == second)))
-    return bent_block(s, TwoSpans{s.coefficients + first, s.coefficients + second, in_first}, x, y, rate_u,
-                      rate_v);
-  return bent_block(s, Gather{s.coefficients, offset}, x, y, rate_u, rate_v);
+  return in_spans(s, u, v,
+                  [&s](const auto& c, const Real& x, const Real& y, const Real& rate_u, const Real& rate_v) {
+                    return bent_block(s, c, x, y, rate_u, rate_v);
+                  });
 }
 
 struct Step {
@@ -135,8 +111,11 @@ inline Mask on_surface(const Surface& s, const Real& u, const Real& v) {
 }
 
 // Each lane takes the steps that it would take alone, so results do not depend on its neighbours.
-inline WaveHit wave_hit(const Surface& s, const Vec& start, const Vec& d, Real u, Real v) {
+inline WaveHit wave_hit(const Surface& s, const Vec& origin, const Vec& d) {
   const double slack_u = 0.5 * (s.u.end - s.u.begin), slack_v = 0.5 * (s.v.end - s.v.begin);
+  const Start begin = start_on(s, origin, d, 3);
+  const Vec& start = begin.point;
+  Real u = begin.u, v = begin.v;
   Mask moving = splat(0) == splat(0), nearby = splat(0) != splat(0);
   for (int iteration = 0; iteration <= kMaxIterations; ++iteration) {
     const Point at = evaluate(s, u, v);
@@ -159,30 +138,6 @@ inline WaveHit wave_hit(const Surface& s, const Vec& start, const Vec& d, Real u
           u + step.u,
           v + step.v,
           found};
-}
-
-// Parameters near the ray's hit: its place over the plane through the surface's middle, and the quadric of
-// heights there.
-struct Start {
-  Real u, v;
-};
-inline Start start_on(const Surface& s, const Vec& start, const Vec& d) {
-  const Vec ex = constant(s.axis_x), ey = constant(s.axis_y), normal = constant(s.normal);
-  const Vec from = start - constant(s.plane_point);
-  const Real inverse = splat(1) / dot(normal, d);
-  const Real x0 = dot(ex, from), y0 = dot(ey, from), z0 = dot(normal, from);
-  const Real along_x = dot(ex, d) * inverse, along_y = dot(ey, d) * inverse;
-  Real height = splat(0), x = x0, y = y0;
-  for (int k = 0; k < 3; ++k) {
-    x = x0 + (height - z0) * along_x;
-    y = y0 + (height - z0) * along_y;
-    height = splat(s.height[0]) + x * (splat(s.height[1]) + splat(s.height[3]) * x + splat(s.height[4]) * y) +
-             y * (splat(s.height[2]) + splat(s.height[5]) * y);
-  }
-  x = x0 + (height - z0) * along_x;
-  y = y0 + (height - z0) * along_y;
-  return {clamp(splat(s.start_u[0]) + splat(s.start_u[1]) * x + splat(s.start_u[2]) * y, s.u.begin, s.u.end),
-          clamp(splat(s.start_v[0]) + splat(s.start_v[1]) * x + splat(s.start_v[2]) * y, s.v.begin, s.v.end)};
 }
 
 // A wave on the dual basis of a surface's tangents and its own direction: uu eu eu + uv (eu ev + ev eu) + vv
@@ -271,16 +226,14 @@ inline void trace_waves(const WaveLens& lens, const WaveRays& rays) {
     const Vec from = Vec{read(0), read(1), read(2)} - back_origin;
     Vec eye_side{read(3), read(4), read(5)};
 
-    const Start at_back = start_on(lens.back, from, eye_side);
-    const WaveHit back = wave_hit(lens.back, from, eye_side, at_back.u, at_back.v);
+    const WaveHit back = wave_hit(lens.back, from, eye_side);
     Mask clear =
         back.found & (dot(back.normal, eye_side) < splat(0)) & (dot(back.point - from, eye_side) >= splat(0));
     if (lens.along_normal) eye_side = splat(-1) * back.normal;
     const Refraction inside = refract_at(eye_side, back.normal, lens.eta);
 
     const Vec start = back.point + to_front;
-    const Start at_front = start_on(lens.front, start, inside.direction);
-    const WaveHit front = wave_hit(lens.front, start, inside.direction, at_front.u, at_front.v);
+    const WaveHit front = wave_hit(lens.front, start, inside.direction);
     const Real length = dot(front.point - start, inside.direction);
     const Refraction outside = refract_at(inside.direction, splat(-1) * front.normal, 1 / lens.eta);
     clear = clear & inside.possible & front.found & (dot(front.normal, inside.direction) > splat(0)) &
