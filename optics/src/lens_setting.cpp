@@ -94,7 +94,7 @@ void LensSetting::take_reference(const ChiefRayTracer& tracer, const Ray& at_ver
   must_pass(chief.end == LensPathEnd::passed, name,
             "lets no light through along the normal of its back vertex");
   const Axes seen = listing_axes(lens_, chief.eye_side);
-  reference_ = power(chief.wave, seen, kInfinity);
+  reference_ = power(chief.wave, seen, kInfinity, 0);
   reference_is_sphere_ = cylinder_of(reference_) < kNoCylinder_d;
   of_lens_.reference = sphere_cylinder(reference_, CylinderForm::minus);
   of_lens_.reference_prism = prism_in(seen, chief.object_side);
@@ -117,12 +117,16 @@ LensSetting::Paraxial LensSetting::straight_ahead_from(const glm::dvec3& eye, co
            tangent_change(wearer_, turning->object_side, turning->by_y)}};
 }
 
-// What the lens adds to the vergence of an object at `object_mm`.
-PowerMatrix LensSetting::power(const Wavefront& wave, const Axes& seen, double object_mm) const {
-  const double n = 1000 * task_.indices.around, object_d = n / object_mm;
+// What the lens adds to the vergence of an object at `object_mm`, by the wave `ahead_mm` further on:
+// transferred() within the two axes across the ray.
+PowerMatrix LensSetting::power(const Wavefront& wave, const Axes& seen, double object_mm,
+                               double ahead_mm) const {
   const glm::dvec3 qx = wave.curvature * seen.x, qy = wave.curvature * seen.y;
-  return {object_d - n * glm::dot(seen.x, qx), -n * glm::dot(seen.x, qy),
-          object_d - n * glm::dot(seen.y, qy)};
+  const double xx = glm::dot(seen.x, qx), xy = glm::dot(seen.x, qy), yy = glm::dot(seen.y, qy);
+  const double spread = ahead_mm * (xx * yy - xy * xy), n = 1000 * task_.indices.around,
+               object_d = n / object_mm;
+  const double scale = n / (1 + ahead_mm * (xx + yy + spread));
+  return {object_d - scale * (xx + spread), -scale * xy, object_d - scale * (yy + spread)};
 }
 
 LensPoint LensSetting::measured(LensPoint point, const ChiefRay& chief) const {
@@ -134,13 +138,9 @@ LensPoint LensSetting::measured(LensPoint point, const ChiefRay& chief) const {
 
   const Axes& axes = worn() ? wearer_ : lens_;
   const Axes seen = listing_axes(axes, chief.eye_side);
-  Wavefront wave = chief.wave;
-  if (worn()) {  // on to the vertex sphere
-    const double ahead =
-        glm::distance(chief.back_mm, rotation_centre_) - options_.position.rotation_centre_mm;
-    wave = transferred(wave, -chief.eye_side, ahead);
-  }
-  point.power = power(wave, seen, task_.object_distance_mm);
+  const double to_sphere_mm =
+      worn() ? glm::distance(chief.back_mm, rotation_centre_) - options_.position.rotation_centre_mm : 0;
+  point.power = power(chief.wave, seen, task_.object_distance_mm, to_sphere_mm);
   const glm::dvec2 gaze = tangents(axes, chief.eye_side), radial = worn() ? gaze : point.point_mm;
   const double radius = glm::length(radial);
   const glm::dvec2 meridian = radius > kOnAxis ? radial / radius : glm::dvec2(1, 0);

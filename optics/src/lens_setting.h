@@ -36,7 +36,8 @@ class LensSetting {
     glm::dmat2 by_gaze{1};
   };
 
-  [[nodiscard]] PowerMatrix power(const Wavefront& wave, const Axes& seen, double object_mm) const;
+  [[nodiscard]] PowerMatrix power(const Wavefront& wave, const Axes& seen, double object_mm,
+                                  double ahead_mm) const;
   [[nodiscard]] Paraxial straight_ahead_from(const glm::dvec3& eye, const ChiefRayTracer& tracer,
                                              const std::string& name) const;
   void take_reference(const ChiefRayTracer& tracer, const Ray& at_vertex, const std::string& name);

@@ -21,13 +21,6 @@ Axes wearer_axes(const LensFrame& frame, const WearingPosition& position) {
           lens.to_model({-sw, cw * sp, cw * cp})};
 }
 
-// Rotation of a = z into b = d: v - (a + b) (a + b).v / (1 + a.b) + 2 b a.v, here for v across z.
-Axes listing_axes(const Axes& axes, const glm::dvec3& d) {
-  const glm::dvec3 sum = axes.z + d;
-  const double scale = 1 / (1 + glm::dot(axes.z, d));
-  return {axes.x - sum * (glm::dot(d, axes.x) * scale), axes.y - sum * (glm::dot(d, axes.y) * scale), d};
-}
-
 glm::dvec3 gaze_direction(const Axes& axes, const glm::dvec2& gaze_rad) {
   return glm::normalize(axes.to_model({std::tan(gaze_rad.x), std::tan(gaze_rad.y), 1}));
 }

@@ -25,8 +25,12 @@ struct Axes {
 [[nodiscard]] Axes wearer_axes(const LensFrame& frame, const WearingPosition& position);
 
 /// x and y of `axes` after the shortest rotation of z into the unit direction `d`, not opposite to z; z is
-/// `d`.
-[[nodiscard]] Axes listing_axes(const Axes& axes, const glm::dvec3& d);
+/// `d`. Rotation of a into b: v - (a + b) (a + b).v / (1 + a.b) + 2 b a.v, here for v across a.
+[[nodiscard]] inline Axes listing_axes(const Axes& axes, const glm::dvec3& d) {
+  const glm::dvec3 sum = axes.z + d;
+  const double scale = 1 / (1 + glm::dot(axes.z, d));
+  return {axes.x - sum * (glm::dot(d, axes.x) * scale), axes.y - sum * (glm::dot(d, axes.y) * scale), d};
+}
 
 /// Unit direction of a gaze, and back.
 [[nodiscard]] glm::dvec3 gaze_direction(const Axes& axes, const glm::dvec2& gaze_rad);
