@@ -36,9 +36,10 @@ struct LensFrame {
                                    const glm::dvec3& up = {0, 1, 0});
 
 enum class EvaluationMode {
-  lensmeter,  ///< parallel beam normal to the back surface at the point (focal point on axis); power at the
-              ///< back surface there
-  as_worn,    ///< chief rays through the eye's rotation centre; powers on the vertex sphere
+  /// Parallel beam normal to the back surface at the point (focal point on axis); power at the surface there.
+  lensmeter,
+  /// Chief rays through the eye's rotation centre; powers on the vertex sphere.
+  as_worn,
 };
 
 enum class Eye { right, left };
@@ -47,11 +48,10 @@ enum class Eye { right, left };
 /// lens is turned (pantoscopic angle first, then wrap), so that the distances below hold for every tilt.
 struct WearingPosition {
   double rotation_centre_mm = 25;  ///< back vertex to the eye's centre of rotation, > 0
-  double vertex_distance_mm =
-      12;                      ///< back vertex to the cornea, > 0; the entrance pupil lies 3 mm behind that
-  double pantoscopic_rad = 0;  ///< positive: the lower rim turned towards the face
-  double wrap_rad = 0;         ///< positive: the temporal rim turned towards the face
-  Eye eye = Eye::right;        ///< temporal is -x for the right eye, +x for the left
+  double vertex_distance_mm = 12;  ///< back vertex to the cornea, > 0; the entrance pupil is 3 mm farther
+  double pantoscopic_rad = 0;      ///< positive: the lower rim turned towards the face
+  double wrap_rad = 0;             ///< positive: the temporal rim turned towards the face
+  Eye eye = Eye::right;            ///< temporal is -x for the right eye, +x for the left
 };
 
 struct EvaluationOptions {
@@ -69,37 +69,37 @@ struct EvaluationOptions {
 /// was not asked for only where the ray met the back surface.
 struct LensPoint {
   LensPathEnd end = LensPathEnd::missed;
-  glm::dvec2 gaze_rad{
-      0};  ///< wearer's frame, horizontal (+: towards +x) and vertical (+: up): the line from the rotation
-           ///< centre to the point runs along (tan h, tan v, 1). As worn it is the eye-side ray.
+  /// Wearer's frame, horizontal (+: towards +x) and vertical (+: up): the line from the rotation centre to
+  /// the point runs along (tan h, tan v, 1). As worn it is the eye-side ray.
+  glm::dvec2 gaze_rad{0};
   glm::dvec2 point_mm{0};  ///< lens's frame, x and y of the back surface's point
-  PowerMatrix
-      power;  ///< in axes turned from (x, y) by the shortest rotation of z into the eye-side ray (Listing)
-  double tangential_d =
-      0;  ///< power along the plane of z and gaze (focimeter: of z and the point; on the axis: along x)
-  double sagittal_d = 0;          ///< and across it
+  /// In the axes that the shortest rotation of z into the eye-side ray makes of x and y (Listing).
+  PowerMatrix power;
+  double tangential_d = 0;  ///< power along the plane of z and gaze (focimeter: and the point; on z: along x)
+  double sagittal_d = 0;    ///< and across it
   double mean_power_error_d = 0;  ///< mean power minus that at the reference
-  double oblique_astigmatism_d =
-      0;  ///< cylinder that is not the reference's: |J - J_ref| x 2; with the sign of tangential -
-          ///< sagittal where the reference has no cylinder (less than 0.005 D)
-  glm::dvec2 prism{
-      0};  ///< prism dioptre, base towards +x and up (100 tan of the deviation, by its components)
+  /// Cylinder that is not the reference's: |J - J_ref| x 2; with the sign of tangential - sagittal where the
+  /// reference has no cylinder (less than 0.005 D).
+  double oblique_astigmatism_d = 0;
+  glm::dvec2 prism{0};  ///< prism dioptre, base to +x and up: 100 tan of the deviation, by its components
   glm::dvec2 object_rad{0};  ///< direction of the object-side ray, as gaze_rad
-  double distortion = 0;  ///< as worn: tan(object angle) / tan(gaze angle) over its paraxial value, minus 1,
-                          ///< with tangents counted from straight ahead; 0 there and for a focimeter
+  /// As worn: tan(object angle) / tan(gaze angle) over its paraxial value, minus 1, with tangents counted
+  /// from straight ahead; 0 there and for a focimeter.
+  double distortion = 0;
   double transverse_colour = 0;  ///< prism dioptre between F and C, >= 0, along the same eye-side ray
 };
 
 struct LensEvaluation {
   SphereCylinder reference;       ///< by the focimeter at the back vertex, minus cylinder
   glm::dvec2 reference_prism{0};  ///< there, as LensPoint::prism
-  double spectacle_magnification =
-      1;  ///< of a distant object straight ahead, paraxial, at the entrance pupil of the lens as
-          ///< positioned; the mean (geometric) of the principal meridians
+  /// Of a distant object straight ahead: paraxial, at the entrance pupil, of the lens as positioned; the
+  /// geometric mean of the principal meridians.
+  double spectacle_magnification = 1;
   std::vector<LensPoint> points;  ///< in the order asked for
 };
 
-/// Measures one lens. Immutable after construction; thread-safe.
+/// Measures one lens. Immutable after construction; thread-safe. Lenses that a LensBatchTracer takes are
+/// measured several rays per instruction, others ray by ray.
 class LensEvaluator {
  public:
   /// Keeps a reference to `lens`, which must outlive it. Throws catoptra::Error where a side is missing.

@@ -24,7 +24,7 @@ struct PowerMatrix {
 
 [[nodiscard]] PowerMatrix power_matrix(const SphereCylinder& power);
 
-/// Cylinders below 1e-9 D are written as none.
+/// Cylinders below 1e-9 D are written as none, axes within 1e-9 rad above 0 as pi.
 [[nodiscard]] SphereCylinder sphere_cylinder(const PowerMatrix& matrix, CylinderForm form);
 
 /// The same power with the cylinder in the other form, or the same.
