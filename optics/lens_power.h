@@ -6,14 +6,14 @@ namespace catoptra::optics {
 /// Sign in which a cylinder is written.
 enum class CylinderForm { plus, minus };
 
-/// A spectacle power, dioptre. The axis is TABO: 0 < axis_rad <= pi, from +x (right of someone who faces the wearer)
-/// counter-clockwise; pi where there is no cylinder.
+/// A spectacle power, dioptre. The axis is TABO: 0 < axis_rad <= pi, from +x (right of someone who faces the
+/// wearer) counter-clockwise; pi where there is no cylinder.
 struct SphereCylinder {
   double sphere_d = 0, cylinder_d = 0, axis_rad = 3.14159265358979323846;
 };
 
-/// The power matrix [[xx, xy], [xy, yy]] in x right, y up, dioptre: the vergence added to a wave's. Sums of thin lenses in
-/// contact add. Source: Long 1976; facts: S + C sin^2 A, -C sin A cos A, S + C cos^2 A.
+/// The power matrix [[xx, xy], [xy, yy]] in x right, y up, dioptre: the vergence added to a wave's. Sums of
+/// thin lenses in contact add. Source: Long 1976; facts: S + C sin^2 A, -C sin A cos A, S + C cos^2 A.
 struct PowerMatrix {
   double xx = 0, xy = 0, yy = 0;
 
