@@ -1,7 +1,8 @@
-// The batch kernel for 4 rays at once, compiled for AVX2 and FMA.
+// The batch kernels for 4 rays at once, compiled for AVX2 and FMA.
 #include <immintrin.h>
 
 #include "optics/src/lens_batch_kernel.h"
+#include "optics/src/lens_wave_kernel.h"
 
 namespace catoptra::optics::lens_batch {
 namespace {
@@ -25,10 +26,16 @@ inline bool all(const Mask& m) {
 
 #include "optics/src/lens_batch_kernel.inl"
 
+#include "optics/src/lens_wave_kernel.inl"
+
 }  // namespace
 
 void trace_avx2(const Lens& lens, const Rays& rays) {
   trace(lens, rays);
+}
+
+void trace_waves_avx2(const WaveLens& lens, const WaveRays& rays) {
+  trace_waves(lens, rays);
 }
 
 }  // namespace catoptra::optics::lens_batch

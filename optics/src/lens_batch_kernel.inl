@@ -122,9 +122,20 @@ inline Point evaluate_block(const Surface& s, const Coefficients& c, const Real&
   return {at.p, rate_u * at.u, rate_v * at.v};
 }
 
-// Where the lanes are in different spans.
-inline Point evaluate_spans(const Surface& s, const Real& u, const Real& v) {
+// Calls `block` with the coefficients of every lane's span, the local parameters and their rates.
+template <class Block>
+inline auto in_spans(const Surface& s, const Real& u, const Real& v, const Block& block) {
   const std::int32_t size = 4 * (s.degree_u + 1) * (s.degree_v + 1);
+  const std::int32_t su = span_of(s.u, lane(u, 0)), sv = span_of(s.v, lane(v, 0));
+  const Mask one_span = (u >= splat(s.u.low[su])) & (u < splat(s.u.high[su])) & (v >= splat(s.v.low[sv])) &
+                        (v < splat(s.v.high[sv]));
+  if (kLanes == 1 || all(one_span)) {
+    const Real rate_u = splat(s.u.rate[su]), rate_v = splat(s.v.rate[sv]);
+    const Real x = (u - splat(s.u.middle[su])) * rate_u, y = (v - splat(s.v.middle[sv])) * rate_v;
+    const Broadcast c{s.coefficients + std::size_t(su * s.spans_v + sv) * std::size_t(size)};
+    return block(c, x, y, rate_u, rate_v);
+  }
+  // The lanes are in different spans.
   Index spans_u{}, spans_v{};
   for (int i = 0; i < kLanes; ++i) {
     set_lane(spans_u, i, span_of(s.u, lane(u, i)));
@@ -139,23 +150,15 @@ inline Point evaluate_spans(const Surface& s, const Real& u, const Real& v) {
     if (lane(offset, i) != first) second = lane(offset, i);
   const Mask in_first = offset == first;
   if (all(in_first | (offset == second)))
-    return evaluate_block(s, TwoSpans{s.coefficients + first, s.coefficients + second, in_first}, x, y,
-                          rate_u, rate_v);
-  return evaluate_block(s, Gather{s.coefficients, offset}, x, y, rate_u, rate_v);
+    return block(TwoSpans{s.coefficients + first, s.coefficients + second, in_first}, x, y, rate_u, rate_v);
+  return block(Gather{s.coefficients, offset}, x, y, rate_u, rate_v);
 }
 
 inline Point evaluate(const Surface& s, const Real& u, const Real& v) {
-  const std::int32_t su = span_of(s.u, lane(u, 0)), sv = span_of(s.v, lane(v, 0));
-  const std::int32_t size = 4 * (s.degree_u + 1) * (s.degree_v + 1);
-  const Mask one_span = (u >= splat(s.u.low[su])) & (u < splat(s.u.high[su])) & (v >= splat(s.v.low[sv])) &
-                        (v < splat(s.v.high[sv]));
-  if (kLanes == 1 || all(one_span)) {
-    const Real rate_u = splat(s.u.rate[su]), rate_v = splat(s.v.rate[sv]);
-    const Real x = (u - splat(s.u.middle[su])) * rate_u, y = (v - splat(s.v.middle[sv])) * rate_v;
-    const Broadcast c{s.coefficients + std::size_t(su * s.spans_v + sv) * std::size_t(size)};
-    return evaluate_block(s, c, x, y, rate_u, rate_v);
-  }
-  return evaluate_spans(s, u, v);
+  return in_spans(s, u, v,
+                  [&s](const auto& c, const Real& x, const Real& y, const Real& rate_u, const Real& rate_v) {
+                    return evaluate_block(s, c, x, y, rate_u, rate_v);
+                  });
 }
 
 struct SurfaceHit {
@@ -165,24 +168,41 @@ struct SurfaceHit {
   Mask found;
 };
 
-// `origin` relative to the surface's.
-inline SurfaceHit hit_surface(const Surface& s, const Vec& origin, const Vec& d) {
-  // Where the ray meets the plane through the surface's middle, then once towards the height there.
+// Where a search for the hit of a ray starts: near it, on the ray and in parameters.
+struct Start {
+  Vec point;
+  Real u, v;
+};
+
+// Where the ray meets the plane through the surface's middle, then `steps` times towards the height there: rays that run more
+// along the plane need more. `origin` is relative to the surface's.
+inline Start start_on(const Surface& s, const Vec& origin, const Vec& d, int steps) {
   const Vec plane = constant(s.plane_point), n0 = constant(s.normal), ex = constant(s.axis_x),
             ey = constant(s.axis_y);
+  const Vec from = origin - plane;
   const Real inverse_slope = splat(1) / dot(n0, d);
-  Vec start = origin + (dot(n0, plane - origin) * inverse_slope) * d;
-  const auto height = [&](const Real& x, const Real& y) -> Real {
-    return splat(s.height[0]) + x * (splat(s.height[1]) + splat(s.height[3]) * x + splat(s.height[4]) * y) +
-           y * (splat(s.height[2]) + splat(s.height[5]) * y);
-  };
-  Real x = dot(ex, start - plane), y = dot(ey, start - plane);
-  start = start + (height(x, y) * inverse_slope) * d;
-  x = dot(ex, start - plane);
-  y = dot(ey, start - plane);
+  const Real along_x = dot(ex, d), along_y = dot(ey, d), x0 = dot(ex, from), y0 = dot(ey, from),
+             z0 = dot(n0, from);
+  Real t = splat(0) - z0 * inverse_slope, x = x0 + t * along_x, y = y0 + t * along_y;
+  for (int k = 0; k < steps; ++k) {
+    const Real height = splat(s.height[0]) +
+                        x * (splat(s.height[1]) + splat(s.height[3]) * x + splat(s.height[4]) * y) +
+                        y * (splat(s.height[2]) + splat(s.height[5]) * y);
+    t = (height - z0) * inverse_slope;
+    x = x0 + t * along_x;
+    y = y0 + t * along_y;
+  }
+  return {origin + t * d,
+          clamp(splat(s.start_u[0]) + splat(s.start_u[1]) * x + splat(s.start_u[2]) * y, s.u.begin, s.u.end),
+          clamp(splat(s.start_v[0]) + splat(s.start_v[1]) * x + splat(s.start_v[2]) * y, s.v.begin, s.v.end)};
+}
+
+// `origin` relative to the surface's.
+inline SurfaceHit hit_surface(const Surface& s, const Vec& origin, const Vec& d) {
   const double slack_u = 0.5 * (s.u.end - s.u.begin), slack_v = 0.5 * (s.v.end - s.v.begin);
-  Real u = clamp(splat(s.start_u[0]) + splat(s.start_u[1]) * x + splat(s.start_u[2]) * y, s.u.begin, s.u.end);
-  Real v = clamp(splat(s.start_v[0]) + splat(s.start_v[1]) * x + splat(s.start_v[2]) * y, s.v.begin, s.v.end);
+  const Start begin = start_on(s, origin, d, 1);
+  const Vec& start = begin.point;
+  Real u = begin.u, v = begin.v;
 
   // q + t d = a S_u + b S_v: with w = d x q, a = S_v.w / n.d and b = -S_u.w / n.d; |w| is the distance of ray
   // and surface point.

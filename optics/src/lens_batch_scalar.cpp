@@ -1,5 +1,6 @@
-// The batch kernel one ray at a time, for any machine.
+// The batch kernels one ray at a time, for any machine.
 #include "optics/src/lens_batch_kernel.h"
+#include "optics/src/lens_wave_kernel.h"
 
 namespace catoptra::optics::lens_batch {
 namespace {
@@ -37,10 +38,16 @@ inline void set_lane(Index& x, int, std::int64_t value) {
 
 #include "optics/src/lens_batch_kernel.inl"
 
+#include "optics/src/lens_wave_kernel.inl"
+
 }  // namespace
 
 void trace_scalar(const Lens& lens, const Rays& rays) {
   trace(lens, rays);
+}
+
+void trace_waves_scalar(const WaveLens& lens, const WaveRays& rays) {
+  trace_waves(lens, rays);
 }
 
 }  // namespace catoptra::optics::lens_batch

@@ -83,7 +83,6 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
 }
 
 TEST(CommandLine, WhatIsNotInThisVersionSaysSo) {
-  EXPECT_TRUE(holds(run_catoptra({"lens", "evaluate", "x.step"}).errors, "not in this version"));
   EXPECT_TRUE(holds(run_catoptra({"render", "s.toml", "-o", "x.png", "--mode", "auto"}).errors,
                     "not in this version"));
 }

@@ -35,7 +35,33 @@ class BackSurface : public cad_import::ExactSurface {
   double z_;
 };
 
-/// A square lens of `width_mm`, its front vertex at the origin and its front towards +z. Radii in mm are
+/// A square lens of `width_mm` around the z axis whose sides are height fields with u = x and v = y, of
+/// index 1.5 in air. Normals point out of it.
+inline optics::Optic lens_of_sides(std::shared_ptr<const cad_import::ExactSurface> front,
+                                   std::shared_ptr<const cad_import::ExactSurface> back, double width_mm,
+                                   int per_side) {
+  auto lens = rectangular_mirror(std::move(front), width_mm, width_mm, per_side, per_side);
+  auto behind = rectangular_mirror(std::move(back), width_mm, width_mm, per_side, per_side);
+  for (auto& triangle : behind.mesh.triangles) {  // counter-clockwise as seen from -z
+    std::swap(triangle.vertices[1], triangle.vertices[2]);
+    std::swap(triangle.uv[1], triangle.uv[2]);
+  }
+  lens.name = "test lens";
+  lens.kind = optics::OpticKind::lens;
+  lens.back = {std::move(behind.faces), std::move(behind.mesh)};
+  lens.medium = optics::constant_medium(1.5);
+  return lens;
+}
+
+/// The same between two surfaces with normals towards +z of which the back is moved down by the thickness.
+inline optics::Optic lens_between(std::shared_ptr<const cad_import::ExactSurface> front,
+                                  std::shared_ptr<const cad_import::ExactSurface> back, double thickness_mm,
+                                  double width_mm, int per_side) {
+  return lens_of_sides(std::move(front), std::make_shared<BackSurface>(std::move(back), -thickness_mm),
+                       width_mm, per_side);
+}
+
+/// The same of two spheres, its front vertex at the origin and its front towards +z. Radii in mm are
 /// positive where the centre of curvature lies towards -z (the side the light leaves to), 0 for a plane;
 /// `per_side` vertices a side.
 inline optics::Optic spherical_lens(double front_radius_mm, double back_radius_mm, double thickness_mm,
@@ -43,18 +69,7 @@ inline optics::Optic spherical_lens(double front_radius_mm, double back_radius_m
   const auto sphere = [&](double radius) {
     return std::make_shared<ConicSurface>(radius == 0 ? 0 : 1 / radius, 0, width_mm / 2, width_mm / 2);
   };
-  auto lens = rectangular_mirror(sphere(front_radius_mm), width_mm, width_mm, per_side, per_side);
-  auto back = rectangular_mirror(std::make_shared<BackSurface>(sphere(back_radius_mm), -thickness_mm),
-                                 width_mm, width_mm, per_side, per_side);
-  for (auto& triangle : back.mesh.triangles) {  // counter-clockwise as seen from -z
-    std::swap(triangle.vertices[1], triangle.vertices[2]);
-    std::swap(triangle.uv[1], triangle.uv[2]);
-  }
-  lens.name = "test lens";
-  lens.kind = optics::OpticKind::lens;
-  lens.back = {std::move(back.faces), std::move(back.mesh)};
-  lens.medium = optics::constant_medium(1.5);
-  return lens;
+  return lens_between(sphere(front_radius_mm), sphere(back_radius_mm), thickness_mm, width_mm, per_side);
 }
 
 }  // namespace catoptra::test

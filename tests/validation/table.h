@@ -18,6 +18,9 @@ struct Row {
 /// Hits, directions and curvatures against formulas. `folder` takes the STEP files that it makes.
 [[nodiscard]] std::vector<Row> closed_form_rows(const std::filesystem::path& folder);
 
+/// Measured lenses against published and traced figures.
+[[nodiscard]] std::vector<Row> lens_rows();
+
 /// Pictures against exact rays. `examples` holds the example scenes.
 [[nodiscard]] std::vector<Row> picture_rows(const std::filesystem::path& examples,
                                             const std::filesystem::path& folder);

@@ -36,6 +36,7 @@ int main(int argc, char** argv) try {
   }
   const std::filesystem::path output = argv[2];
   auto rows = closed_form_rows(output.parent_path());
+  for (Row& row : lens_rows()) rows.push_back(std::move(row));
   for (Row& row : picture_rows(argv[1], output.parent_path())) rows.push_back(std::move(row));
   std::ofstream out(output);
   out << "| case | expected | computed | error |\n|---|---|---|---|\n";
