@@ -5,22 +5,12 @@
 #include <iostream>
 #include <iterator>
 
-#include "app/src/one_line.h"
 #include "app/src/scene_context.h"
 #include "cad_import/error.h"
 #include "cad_import/import.h"
 
 namespace catoptra::app {
 namespace {
-
-toml::table parse(std::string_view text, const std::string& name) {
-  try {
-    return toml::parse(text, std::string_view(name));
-  } catch (const toml::parse_error& error) {
-    throw Error(name, "line " + std::to_string(error.source().begin.line),
-                one_line(std::string(error.description())), "the file is not valid TOML");
-  }
-}
 
 double read_unit_mm(const TomlTable& root) {
   const auto unit = root.text("units");
@@ -46,7 +36,7 @@ std::string read_all(std::istream& stream) {
 
 SceneFile read_scene_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                           const SceneReadOptions& options) {
-  const toml::table parsed = parse(text, name);
+  const toml::table parsed = parse_toml(text, name);
   const TomlTable root(
       parsed, name, "",
       {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar", "render"});

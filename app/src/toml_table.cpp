@@ -51,12 +51,25 @@ std::vector<std::string> to_strings(std::initializer_list<std::string_view> view
 
 }  // namespace
 
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, std::string_view(name));
+  } catch (const toml::parse_error& error) {
+    throw Error(name, "line " + std::to_string(error.source().begin.line),
+                one_line(std::string(error.description())), "the file is not valid TOML");
+  }
+}
+
 TomlTable::TomlTable(const toml::table& table, std::string file, std::string path,
                      std::initializer_list<std::string_view> known)
+    : TomlTable(table, std::move(file), std::move(path), to_strings(known)) {}
+
+TomlTable::TomlTable(const toml::table& table, std::string file, std::string path,
+                     std::span<const std::string> known)
     : table_(table), file_(std::move(file)), path_(std::move(path)) {
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-    fail(key.str(), "unknown key", hint_for_unknown(key.str(), to_strings(known)));
+    fail(key.str(), "unknown key", hint_for_unknown(key.str(), known));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,10 @@ struct Range {
   [[nodiscard]] static Range not_negative() { return {0, std::numeric_limits<double>::max(), false}; }
 };
 
+/// The root table of `text`; `name` stands for the file in messages. Throws catoptra::Error with the line of
+/// what is not TOML.
+[[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
+
 /// One table of a scene file. The constructor refuses keys that are not in `known`.
 /// Every reader returns nullopt where the key is absent and throws catoptra::Error where its value does not
 /// fit.
@@ -31,6 +36,8 @@ class TomlTable {
   /// `file` as the user named it; `path`: the table's name in messages ("mirror"), empty for the root.
   TomlTable(const toml::table& table, std::string file, std::string path,
             std::initializer_list<std::string_view> known);
+  /// Where the keys are not known before running.
+  TomlTable(const toml::table& table, std::string file, std::string path, std::span<const std::string> known);
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] const toml::node* node(std::string_view key) const { return table_.get(key); }
