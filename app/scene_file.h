@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <glm/mat4x4.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,10 +14,12 @@
 
 namespace catoptra::app {
 
-/// Where an optic of the scene came from, for benchmarks that mesh it again.
+/// Where an optic of the scene came from, for benchmarks that mesh it again and for reports.
 struct OpticSource {
   cad_import::CadModel model;  ///< the whole file, placed in the scene, mm
   std::vector<int> faces;      ///< indices in model.faces of the reflecting ones, or of a lens's front
+  std::vector<std::filesystem::path> files;  ///< that the optic was read from
+  glm::dmat4 placement{1};                   ///< of the (first) file in the scene, mm
 };
 
 /// A scene and the CAD data under it.

@@ -18,6 +18,7 @@ find_package(nlohmann_json 3.11 REQUIRED)                          # app, exampl
 find_package(CLI11 REQUIRED)                                       # app             libcli11-dev
 find_package(tomlplusplus REQUIRED)                                # app             libtomlplusplus-dev
 find_package(spdlog REQUIRED)                                      # app             libspdlog-dev
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)               # app             libssl-dev
 find_package(Freetype REQUIRED)                                    # examples        libfreetype-dev
 if(CATOPTRA_BUILD_TESTS)
   find_package(GTest REQUIRED)                                     # tests           libgtest-dev

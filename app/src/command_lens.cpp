@@ -115,7 +115,7 @@ void add_form(CLI::App& app, MakeOptions& options) {
 }  // namespace
 
 std::vector<Command> add_lens_commands(CLI::App& root, CommonOptions& common) {
-  CLI::App* lens = add_subcommand(root, common, "lens", "Make spectacle lenses");
+  CLI::App* lens = add_subcommand(root, common, "lens", "Make and measure spectacle lenses");
   lens->require_subcommand(0, 1);
   auto options = std::make_shared<MakeOptions>();
   CLI::App* make = add_subcommand(*lens, common, "make",
@@ -126,9 +126,7 @@ std::vector<Command> add_lens_commands(CLI::App& root, CommonOptions& common) {
   make->add_option("-o,--output", options->output, "STEP file to write")
       ->required()
       ->option_text("LENS.step");
-  CLI::App* evaluate = lens->add_subcommand("evaluate", "Not in this version")->group("")->prefix_command();
-  return {{make, [options] { return run_make(*options); }},
-          {evaluate, []() -> int { throw UsageError("'catoptra lens evaluate' is not in this version"); }}};
+  return {{make, [options] { return run_make(*options); }}, add_lens_evaluate_command(*lens, common)};
 }
 
 }  // namespace catoptra::app

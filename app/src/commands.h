@@ -40,6 +40,7 @@ CLI::App* add_subcommand(CLI::App& parent, CommonOptions& common, const std::str
 [[nodiscard]] Command add_compare_command(CLI::App& root, CommonOptions& common);
 [[nodiscard]] Command add_bench_command(CLI::App& root, CommonOptions& common);
 [[nodiscard]] std::vector<Command> add_lens_commands(CLI::App& root, CommonOptions& common);
+[[nodiscard]] Command add_lens_evaluate_command(CLI::App& lens, CommonOptions& common);
 [[nodiscard]] std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common);
 [[nodiscard]] std::vector<Command> add_documentation_commands(CLI::App& root, CommonOptions& common);
 /// Commands of the interface that this version does not have: they say so and exit with 2.

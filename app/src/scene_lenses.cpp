@@ -37,6 +37,8 @@ struct LensKeys {
 struct LensFile {
   cad_import::CadModel model;
   std::vector<int> optical;
+  std::filesystem::path path;
+  glm::dmat4 placement{1};
 };
 
 int read_wavelengths(const TomlTable& table) {
@@ -113,7 +115,7 @@ std::vector<LensFile> read_one_file(const TomlTable& table, const SceneContext& 
   lens.faces = faces_at(model, sides.front);
   lens.back.faces = faces_at(model, sides.back);
   // The source's faces are the front's: what benchmarks mesh again.
-  std::vector<LensFile> files{{std::move(model), sides.front}};
+  std::vector<LensFile> files{{std::move(model), sides.front, entry.path, entry.placement}};
   files[0].optical.insert(files[0].optical.end(), sides.back.begin(), sides.back.end());
   return files;
 }
@@ -125,7 +127,10 @@ std::vector<LensFile> read_two_files(const TomlTable& table, const SceneContext&
   std::vector<LensFile> files;
   for (const FileEntry* entry : {&front, &back}) {
     const bool is_front = entry == &front;
-    LensFile file{cad_import::import_cad(entry->path, import_options(*entry, context)), {}};
+    LensFile file{cad_import::import_cad(entry->path, import_options(*entry, context)),
+                  {},
+                  entry->path,
+                  entry->placement};
     file.optical = told_at(table, is_front ? "front" : "back", [&] {
       return lens_side_of(file.model, is_front ? keys.front_faces : keys.back_faces);
     });
@@ -197,7 +202,9 @@ void read_lens(const TomlTable& table, const SceneContext& context, SceneFile& r
   }
   std::vector<int> front_indices = files[0].optical;
   front_indices.resize(lens.faces.size());
-  result.optic_sources.push_back({files[0].model, front_indices});
+  std::vector<std::filesystem::path> paths;
+  for (const LensFile& file : files) paths.push_back(file.path);
+  result.optic_sources.push_back({files[0].model, front_indices, paths, files[0].placement});
   result.scene.optics.push_back(std::move(lens));
 }
 

@@ -87,7 +87,7 @@ void read_mirror(const TomlTable& table, const SceneContext& context, std::vecto
   optics::Optic optic = make_mirror(table, file.model, faces, result.scene);
   optic.name = name.value_or(default_optic_name(result.scene.optics, entry.path));
   result.scene.optics.push_back(std::move(optic));
-  result.optic_sources.push_back({file.model, faces});
+  result.optic_sources.push_back({file.model, faces, {entry.path}, entry.placement});
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "app/src/built_in_rules.h"
-#include "app/src/lens_rules.h"
+#include "app/src/lens_limits.h"
 #include "tests/app/temporary_folder.h"
 
 namespace catoptra::app {
