@@ -3,9 +3,38 @@
 #include <glm/geometric.hpp>
 
 namespace catoptra::optics {
+namespace {
+
+// Near a pole of the parameters (revolved faces meet at one on the axis of a lens) du x dv vanishes and the
+// second derivatives say nothing in double precision: below this share of |du|^2 + |dv|^2 they are wrong by
+// more than 1e-6.
+constexpr double kPole = 1e-5;
+
+// From so far inside the domain, as a share of it: the curvature of a smooth lens changes by about the square
+// of that.
+constexpr double kInside = 1e-3;
+
+bool at_pole(const cad_import::SurfaceDerivatives& s) {
+  return glm::length(glm::cross(s.du, s.dv)) <= kPole * (glm::dot(s.du, s.du) + glm::dot(s.dv, s.dv));
+}
+
+// The same surface in other parameters: arc lengths along the principal directions.
+cad_import::SurfaceDerivatives by_curvature(const cad_import::ExactSurface& surface, const ExactHit& hit) {
+  const cad_import::ParameterDomain d = surface.domain();
+  const double u = hit.uv.x + kInside * (0.5 * (d.u_min + d.u_max) - hit.uv.x),
+               v = hit.uv.y + kInside * (0.5 * (d.v_min + d.v_max) - hit.uv.y);
+  const cad_import::PrincipalCurvatures c = surface.principal_curvatures(u, v);
+  const glm::dvec3 n = hit.normal;
+  const glm::dvec3 du = glm::normalize(c.direction1 - n * glm::dot(n, c.direction1)), dv = glm::cross(n, du);
+  return {hit.position_mm, du, dv, -c.k1 * n, glm::dvec3(0), -c.k2 * n};
+}
+
+}  // namespace
 
 cad_import::SurfaceDerivatives ChiefRayTracer::derivatives(LensSide side, const ExactHit& hit) const {
-  return side_of(lens_, side).faces[std::size_t(hit.face)].surface->d2(hit.uv.x, hit.uv.y);
+  const cad_import::ExactSurface& surface = *side_of(lens_, side).faces[std::size_t(hit.face)].surface;
+  const cad_import::SurfaceDerivatives exact = surface.d2(hit.uv.x, hit.uv.y);
+  return at_pole(exact) ? by_curvature(surface, hit) : exact;
 }
 
 ChiefRay ChiefRayTracer::trace(const Ray& ray, const ChiefRayTask& task) const {
