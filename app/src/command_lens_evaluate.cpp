@@ -95,7 +95,11 @@ std::optional<optics::Medium> medium_of(const EvaluateOptions& options) {
   if (options.index) {
     const double n = checked("--index", *options.index, 1.0001, 5);
     if (options.abbe) return optics::abbe_medium(n, checked("--abbe", *options.abbe, 1, 1000));
-    return optics::constant_medium(n);
+    optics::Medium medium = optics::constant_medium(n);
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "index %.6g", n);
+    medium.name = name.data();
+    return medium;
   }
   if (options.material.empty()) return std::nullopt;
   const auto media = lens_media(options.catalogue);
@@ -156,7 +160,11 @@ optics::EvaluationOptions evaluation_options(const EvaluateOptions& options) {
   p.pantoscopic_rad = checked("--panto-deg", options.panto, -45, 45) * kRadians;
   p.wrap_rad = checked("--wrap-deg", options.wrap, -45, 45) * kRadians;
   p.eye = options.eye == "left" ? optics::Eye::left : optics::Eye::right;
-  if (options.object_distance != "infinity" && options.object_distance != "inf")
+  const bool far = options.object_distance == "infinity" || options.object_distance == "inf";
+  if (!far && options.mode != "as-worn")
+    throw UsageError("--object-distance belongs to --mode as-worn",
+                     "a focimeter's light comes from infinity");
+  if (!far)
     result.object_distance_mm =
         checked("--object-distance", number_of("--object-distance", options.object_distance), 1, 1e9);
   if (options.wavelength) result.wavelength_nm = checked("--wavelength", *options.wavelength, 380, 780);

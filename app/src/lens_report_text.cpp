@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <numbers>
 
 #include "app/src/lens_report_writers.h"
@@ -17,6 +18,9 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 /// More points than this are shown by the two lines through the middle only.
 constexpr std::size_t kAllPoints = 60;
 
+/// A cylinder below this is shown as none.
+constexpr double kShownCylinder_d = 0.005;
+
 /// Prism below this is shown without a base: no instrument tells its direction.
 constexpr double kShownPrism = 0.005;
 
@@ -27,13 +31,27 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
+/// Without the sign of a zero that rounding makes.
+double shown(double value, int decimals) {
+  return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
+}
+
+/// TABO writes 180 for 0; a power without cylinder has no axis to show.
+std::string axis_text(const optics::SphereCylinder& power) {
+  if (std::abs(power.cylinder_d) < kShownCylinder_d) return "-";
+  const double axis = power.axis_rad * kDegrees;
+  return format("%.1f", axis < 0.05 ? 180.0 : axis);
+}
+
 std::string power_text(const optics::SphereCylinder& power) {
-  return format("%+.3f / %+.3f x %.1f", power.sphere_d, power.cylinder_d, power.axis_rad * kDegrees);
+  const std::string axis = axis_text(power);
+  const std::string text = format("%+.3f", shown(power.sphere_d, 3));
+  return axis == "-" ? text + " sph" : text + format(" / %+.3f x ", power.cylinder_d) + axis;
 }
 
 std::string prism_text(const glm::dvec2& prism) {
   const PrismBase base = prism_base(prism);
-  if (base.prism < kShownPrism) return format("%.3f", base.prism);
+  if (base.prism < kShownPrism) return "0";
   return format("%.3f base %.1f", base.prism, base.base_rad * kDegrees);
 }
 
@@ -41,7 +59,7 @@ std::string head_text(const LensReport& report) {
   const optics::EvaluationOptions& options = report.options.evaluation;
   const optics::WearingPosition& p = options.position;
   std::string text = report.lens + "\n";
-  text += format("  material    %s, index %.5g at %.2f nm%s%s\n", report.material.c_str(), report.index,
+  text += format("  material    %s (%.5g at %.2f nm%s)%s\n", report.material.c_str(), report.index,
                  options.wavelength_nm, report.dispersion ? "" : ", no dispersion known",
                  report.material_unverified ? " (unverified)" : "");
   text +=
@@ -67,33 +85,69 @@ std::string head_text(const LensReport& report) {
                      : ", object at infinity\n");
 }
 
-constexpr char kHeader[] =
-    "      gaze         point     sphere  cylinder   axis  mean pw  obl ast  tangen.  sagitt.    prism      "
-    "dioptre   object        distort.  colour\n"
-    "     h     v      x     y         D         D    deg  error D        D        D        D        h       "
-    " v      h      v        %    pd F-C\n";
+/// One column of the table of points: two lines of heading, width and decimals.
+struct Column {
+  const char* top;
+  const char* bottom;
+  int width, decimals;
+  double (*value)(const LensReportPoint&);
+};
+
+const Column kPlace[] = {
+    {"gaze", "h deg", 7, 1, [](const LensReportPoint& p) { return p.measured.gaze_rad.x * kDegrees; }},
+    {"", "v", 6, 1, [](const LensReportPoint& p) { return p.measured.gaze_rad.y * kDegrees; }},
+    {"point", "x mm", 7, 1, [](const LensReportPoint& p) { return p.measured.point_mm.x; }},
+    {"", "y", 6, 1, [](const LensReportPoint& p) { return p.measured.point_mm.y; }}};
+
+const Column kPower[] = {{"sphere", "D", 8, 2, [](const LensReportPoint& p) { return p.power.sphere_d; }},
+                         {"cyl", "D", 7, 2, [](const LensReportPoint& p) { return p.power.cylinder_d; }}};
+
+const Column kRest[] = {
+    {"mean", "error D", 8, 2, [](const LensReportPoint& p) { return p.measured.mean_power_error_d; }},
+    {"oblique", "ast. D", 8, 2, [](const LensReportPoint& p) { return p.measured.oblique_astigmatism_d; }},
+    {"tang.", "D", 8, 2, [](const LensReportPoint& p) { return p.measured.tangential_d; }},
+    {"sag.", "D", 8, 2, [](const LensReportPoint& p) { return p.measured.sagittal_d; }},
+    {"prism", "h pd", 8, 2, [](const LensReportPoint& p) { return p.measured.prism.x; }},
+    {"", "v", 7, 2, [](const LensReportPoint& p) { return p.measured.prism.y; }},
+    {"object", "h deg", 8, 1, [](const LensReportPoint& p) { return p.measured.object_rad.x * kDegrees; }},
+    {"", "v", 6, 1, [](const LensReportPoint& p) { return p.measured.object_rad.y * kDegrees; }},
+    {"distort.", "%", 9, 2, [](const LensReportPoint& p) { return 100 * p.measured.distortion; }},
+    {"colour", "pd F-C", 8, 3, [](const LensReportPoint& p) { return p.measured.transverse_colour; }}};
+
+constexpr int kAxisWidth = 7;
+
+std::string header_text() {
+  std::string top, bottom;
+  const auto add = [&](const char* above, const char* below, int width) {
+    top += format("%*s", width, above);
+    bottom += format("%*s", width, below);
+  };
+  for (const Column& c : kPlace) add(c.top, c.bottom, c.width);
+  for (const Column& c : kPower) add(c.top, c.bottom, c.width);
+  add("axis", "deg", kAxisWidth);
+  for (const Column& c : kRest) add(c.top, c.bottom, c.width);
+  return top + "\n" + bottom + "\n";
+}
 
 /// Cells that are not known are dashes.
+std::string cell_text(const Column& column, const LensReportPoint& point, bool known = true) {
+  if (!known) return format("%*s", column.width, "-");
+  return format("%*.*f", column.width, column.decimals, shown(column.value(point), column.decimals));
+}
+
 std::string row_text(const LensReportPoint& point) {
-  const optics::LensPoint& m = point.measured;
-  const bool met = m.end != LensPathEnd::missed;
-  std::string text = met || point.asked_by_gaze
-                         ? format("%6.1f%6.1f", m.gaze_rad.x * kDegrees, m.gaze_rad.y * kDegrees)
-                         : format("%6s%6s", "-", "-");
-  text += met || !point.asked_by_gaze ? format(" %6.1f%6.1f", m.point_mm.x, m.point_mm.y)
-                                      : format(" %6s%6s", "-", "-");
-  if (m.end != LensPathEnd::passed) {
-    const char* reason = m.end == LensPathEnd::missed             ? "off the lens"
-                         : m.end == LensPathEnd::total_reflection ? "total reflection"
-                                                                  : "through the rim";
-    return text + "   " + reason + "\n";
-  }
-  text += format("  %+8.3f  %+8.3f %6.1f %+8.3f %+8.3f %+8.3f %+8.3f", point.power.sphere_d,
-                 point.power.cylinder_d, point.power.axis_rad * kDegrees, m.mean_power_error_d,
-                 m.oblique_astigmatism_d, m.tangential_d, m.sagittal_d);
-  return text + format(" %+8.3f %+8.3f %6.2f %6.2f %+8.3f %9.3f\n", m.prism.x, m.prism.y,
-                       m.object_rad.x * kDegrees, m.object_rad.y * kDegrees, 100 * m.distortion,
-                       m.transverse_colour);
+  const LensPathEnd end = point.measured.end;
+  const bool met = end != LensPathEnd::missed;
+  std::string text;
+  for (std::size_t i = 0; i < std::size(kPlace); ++i)
+    text += cell_text(kPlace[i], point, met || point.asked_by_gaze == (i < 2));
+  if (end == LensPathEnd::missed) return text + "  off the lens\n";
+  if (end == LensPathEnd::total_reflection) return text + "  total reflection\n";
+  if (end == LensPathEnd::rim) return text + "  through the rim\n";
+  for (const Column& column : kPower) text += cell_text(column, point);
+  text += format("%*s", kAxisWidth, axis_text(point.power).c_str());
+  for (const Column& column : kRest) text += cell_text(column, point);
+  return text + "\n";
 }
 
 bool on_middle_lines(const LensReportPoint& point) {
@@ -124,7 +178,7 @@ std::string table_text(const LensReport& report) {
   if (report.points.empty()) return {};
   const bool all = report.points.size() <= kAllPoints;
   std::string text = "\n";
-  text += kHeader;
+  text += header_text();
   for (const LensReportPoint& point : report.points)
     if (all || on_middle_lines(point)) text += row_text(point);
   if (!all) text += "  (the middle row and column of the map; --csv and --json have all points)\n";

@@ -48,7 +48,14 @@ LensFaceIndices faces_of_body(const cad_import::CadModel& model, const std::stri
 LensFaceIndices chosen_faces(const cad_import::CadModel& model, const LensSourceOptions& options,
                              std::vector<std::string>& warnings) {
   if (!options.name.empty()) return faces_of_body(model, options.name);
-  LensFaceIndices faces = lens_faces_of(model, options.front_faces, options.back_faces);
+  LensFaceIndices faces;
+  try {
+    faces = lens_faces_of(model, options.front_faces, options.back_faces);
+  } catch (const Error& error) {
+    if (!error.hint().empty()) throw;
+    throw Error(error.file(), error.entity(), error.reason(),
+                "is it a lens? name its sides with --front-faces and --back-faces, or its body with --lens");
+  }
   if (!options.front_faces.empty() || !options.back_faces.empty()) return faces;
   std::vector<std::string> lenses;
   for (std::size_t body = 0; body < model.bodies.size(); ++body)
