@@ -58,7 +58,7 @@ TEST_F(LensEvaluateInput, LensOfASceneAsItIsPlaced) {
   const CommandResult which = run_catoptra({"lens", "evaluate", scene});
   EXPECT_EQ(which.code, 1);
   EXPECT_NE(which.errors.find("--lens: right, left"), std::string::npos) << which.errors;
-  const CommandResult none = run_catoptra({"lens", "evaluate", scene, "--lens", "rigth"});
+  const CommandResult none = run_catoptra({"lens", "evaluate", scene, "--lens", "rigt"});
   EXPECT_EQ(none.code, 1);
   EXPECT_NE(none.errors.find("did you mean 'right'?"), std::string::npos) << none.errors;
 }
@@ -198,7 +198,7 @@ TEST_F(LensEvaluateInput, BadFilesFailInOneLine) {
       {folder_->write("empty.step", "").string(), "empty.step"},
       {folder_->write("text.step", "not a lens\n").string(), "text.step"},
       {folder_->write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string(), "exact surfaces"},
-      {folder_->write("no_lens.toml", "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n").string(),
+      {folder_->write("no_lens.toml", "[camera]\neye = [0, -9, 0]\ntarget = [0, 0, 0]\n").string(),
        "no [[lens]]"},
       {(*folder_ / "none.toml").string(), "none.toml"},
   };
