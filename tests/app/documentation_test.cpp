@@ -4,8 +4,10 @@
 #include <regex>
 
 #include "app/scene_file.h"
+#include "app/src/lens_limits.h"
 #include "cad_import/error.h"
 #include "tests/app/command_runner.h"
+#include "tests/app/lens_evaluate_files.h"
 #include "tests/app/test_scene.h"
 
 namespace catoptra::test {
@@ -32,8 +34,8 @@ TEST(Documentation, NamesEveryOptionOfTheCommandLine) {
 
 TEST(Documentation, NamesEveryCommand) {
   const std::string text = document("command-line.md");
-  for (const char* command :
-       {"info", "render", "compare", "bench", "lens make", "mirror make", "man", "completion"})
+  for (const char* command : {"info", "render", "compare", "bench", "lens make", "lens evaluate",
+                              "mirror make", "man", "completion"})
     EXPECT_NE(text.find("## catoptra " + std::string(command)), std::string::npos) << command;
 }
 
@@ -69,6 +71,40 @@ TEST(Documentation, ExampleSceneReads) {
   write_test_wall(folder);
   write_test_mirror(folder, 1200, "door_mirror.step");
   EXPECT_EQ(app::read_scene_text(scene, "scene.toml", folder.path()).scene.optics.size(), 1u);
+}
+
+TEST(Documentation, ExampleRuleReads) {
+  const std::string text = document("rules.md");
+  const auto begin = text.find("```toml\n") + 8;
+  const auto rule = app::read_rule_text(text.substr(begin, text.find("```", begin) - begin), "rules.md",
+                                        app::lens_rule_words());
+  EXPECT_EQ(rule.figures.size(), 3u);
+  for (const auto& quantity : app::lens_rule_words().quantities)
+    EXPECT_NE(text.find("`" + quantity.name + "`"), std::string::npos) << quantity.name;
+  for (const std::string& id : app::built_in_rules("lens"))
+    EXPECT_NE(text.find("`" + id + "`"), std::string::npos) << id;
+}
+
+void expect_named(const nlohmann::json& value, const std::string& text) {
+  if (value.is_array() && !value.empty()) expect_named(value.front(), text);
+  if (!value.is_object()) return;
+  for (const auto& [key, inner] : value.items()) {
+    if (key == "versions") continue;
+    EXPECT_TRUE(text.find("`" + key + "`") != std::string::npos ||
+                text.find("`." + key + "`") != std::string::npos ||
+                text.find("`" + key + "[]`") != std::string::npos)
+        << key;
+    expect_named(inner, text);
+  }
+}
+
+TEST(Documentation, NamesEveryFieldOfALensReport) {
+  const TemporaryFolder folder;
+  const std::string file = make_lens(folder, {"--sph", "1", "--add", "1"});
+  const nlohmann::json report = evaluate(
+      file, {"--index", "1.5", "--rule", "ansi-z80.1-2015", "--ordered-sph", "1", "--ordered-add", "1"});
+  ASSERT_GT(report.at("limits").size(), 3u);
+  expect_named(report, document("reports.md"));
 }
 
 }  // namespace
