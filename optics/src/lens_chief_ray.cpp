@@ -10,9 +10,10 @@ namespace {
 // more than 1e-6.
 constexpr double kPole = 1e-5;
 
-// From so far inside the domain, as a share of it: the curvature of a smooth lens changes by about the square
-// of that.
-constexpr double kInside = 1e-3;
+// So much of the way to the domain's middle, as principal_curvatures() goes: about 1 um on a lens. Surfaces
+// whose curvature changes in proportion to the distance from the pole (a headset's lens does, by 0.09 D per
+// mm) lose 1e-4 D by that.
+constexpr double kInside = 1e-4;
 
 bool at_pole(const cad_import::SurfaceDerivatives& s) {
   return glm::length(glm::cross(s.du, s.dv)) <= kPole * (glm::dot(s.du, s.du) + glm::dot(s.dv, s.dv));
