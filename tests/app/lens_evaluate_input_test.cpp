@@ -110,6 +110,21 @@ TEST_F(LensEvaluateInput, UnverifiedFiguresSaySoEverywhere) {
   EXPECT_EQ(report.at("limits_not_judged").at(0).at("quantity"), "center_thickness");
 }
 
+TEST_F(LensEvaluateInput, BothTablesOnStandardOutput) {
+  const CommandResult tables = run(joined(order("-4", "ansi-z80.1-2015"), {"--csv", "-"}));
+  ASSERT_EQ(tables.code, 0) << tables.errors;
+  EXPECT_EQ(tables.output.find("gaze_h_deg,"), 0u) << "no text besides";
+  EXPECT_NE(tables.output.find("\n\nrule,clause,quantity"), std::string::npos) << tables.output;
+}
+
+TEST_F(LensEvaluateInput, BodyByName) {
+  const json info = json::parse(run_catoptra({"info", file_, "--json"}).output);
+  const std::string body = info.at("files").at(0).at("bodies").at(0).at("name");
+  const json report = evaluate(file_, {"--index", "1.5", "--lens", body});
+  EXPECT_EQ(report.at("lens"), body);
+  EXPECT_NEAR(report.at("reference").at("sphere_d").get<double>(), -4, 1e-3);
+}
+
 TEST_F(LensEvaluateInput, RuleOfTheUser) {
   const std::string rule = folder_
                                ->write("mine.toml",
@@ -210,6 +225,9 @@ TEST_F(LensEvaluateInput, BadFilesFailInOneLine) {
   }
   EXPECT_EQ(run({"--json", "/no/such/folder/r.json"}).code, 1);
   EXPECT_EQ(run({"--front-faces", "frnt"}).code, 1);
+  const CommandResult body = run({"--lens", "nobody"});
+  EXPECT_EQ(body.code, 1);
+  EXPECT_NE(body.errors.find("body 'nobody': is not in this file"), std::string::npos) << body.errors;
 }
 
 }  // namespace

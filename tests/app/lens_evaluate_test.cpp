@@ -64,6 +64,37 @@ TEST(LensEvaluate, AsWornGoldens) {
               1e-4);
 }
 
+/// Straight ahead at 400 mm, the thick lens of G1 step by step: U = -2.5, U + F1 = 3.5, across 2 mm, + F2,
+/// less U.
+TEST(LensEvaluate, NearObject) {
+  const TemporaryFolder folder;
+  const std::string file = make_lens(
+      folder, {"--sph", "-3.951613", "--index", "1.5", "--front-curve", "6", "--center-thickness", "2"});
+  const json report =
+      evaluate(file, {"--index", "1.5", "--mode", "as-worn", "--object-distance", "400", "--gaze", "0,0"});
+  EXPECT_NEAR(at(report.at("points").at(0), "sphere_d"), 3.5 / (1 - 0.002 / 1.5 * 3.5) - 10 + 2.5, kPower_d);
+  EXPECT_EQ(at(report.at("position"), "object_distance_mm"), 400);
+  EXPECT_NEAR(at(report.at("reference"), "sphere_d"), -3.951613, kPower_d)
+      << "the focimeter's light is parallel";
+}
+
+/// Martin's rule: S' = S (1 + sin^2 a / 2n), C' = S' tan^2 a about the axis of rotation. It is for thin
+/// lenses of small tilt: at 15 degrees it leaves out terms of a^4, and the lens is 2 mm thick.
+TEST(LensEvaluate, TiltMakesACylinderAboutItsAxis) {
+  const TemporaryFolder folder;
+  const std::string file = make_lens(folder, {"--sph", "-4", "--index", "1.5"});
+  const double s = std::sin(15 * std::numbers::pi / 180), t = std::tan(15 * std::numbers::pi / 180);
+  const double sphere = -4 * (1 + s * s / 3);
+  for (const auto& [option, axis] : {std::pair{"--panto-deg", 180.0}, std::pair{"--wrap-deg", 90.0}}) {
+    const json report =
+        evaluate(file, {"--index", "1.5", "--mode", "as-worn", option, "15", "--gaze", "0,0"});
+    const json& point = report.at("points").at(0);
+    EXPECT_NEAR(at(point, "sphere_d"), sphere, 0.02) << option;
+    EXPECT_NEAR(at(point, "cylinder_d"), sphere * t * t, 0.03) << option;
+    EXPECT_NEAR(at(point, "axis_deg"), axis, kAxis_deg) << option;
+  }
+}
+
 /// Behind a plane front the focimeter's ray, normal to the back, is turned by as much as the one along the
 /// axis.
 TEST(LensEvaluate, PrismAndItsBase) {
