@@ -19,14 +19,17 @@ constexpr double kRadians = std::numbers::pi / 180;
 /// Where neither gaze nor place is asked for, degrees.
 constexpr double kDefaultGazeMax_deg = 30, kDefaultGazeStep_deg = 10;
 
+/// No lens reaches farther than this, mm (or, of gaze, degrees: checked more closely after that).
+constexpr double kFarthest_mm = 10000;
+
 /// Beyond it a line of sight does not meet any spectacle lens.
 constexpr double kMostGaze_deg = 80;
 
 /// `value` of `option` within [min, max]. Throws UsageError.
-double checked(const char* option, double value, double min, double max) {
+double checked(const std::string& option, double value, double min, double max) {
   if (std::isfinite(value) && value >= min && value <= max) return value;
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%s %g is out of range", option, value);
+  std::snprintf(text.data(), text.size(), "%s %g is out of range", option.c_str(), value);
   std::array<char, 80> hint{};
   std::snprintf(hint.data(), hint.size(), "%g to %g", min, max);
   throw UsageError(text.data(), hint.data());
@@ -58,7 +61,8 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
 
 glm::dvec2 point_of(const std::string& option, const std::string& text) {
   const auto values = numbers_of(option, text, 2);
-  return {values[0], values[1]};
+  return {checked(option, values[0], -kFarthest_mm, kFarthest_mm),
+          checked(option, values[1], -kFarthest_mm, kFarthest_mm)};
 }
 
 std::optional<optics::Medium> medium_of(const LensEvaluateOptions& options) {

@@ -172,6 +172,7 @@ TEST_F(LensEvaluateInput, WrongUsageIsToldBeforeAnythingIsRead) {
       {{"--index", "1.5", "--gaze", "5,0", "--gaze-max", "20"}, "excludes"},
       {{"--index", "1.5", "--gaze-max", "-1"}, "--gaze-max"},
       {{"--index", "1.5", "--gaze-step", "0"}, "--gaze-step"},
+      {{"--index", "1.5", "--points", "1e300,0"}, "--points 1e+300"},
       {{"--index", "1.5", "--map-step", "0"}, "--map-step"},
       {{"--index", "1.5", "--map-step", "2", "--points", "1,1"}, "excludes"},
       {{"--index", "1.5", "--rotation-centre", "0"}, "--rotation-centre"},
