@@ -77,8 +77,8 @@ OpticSide polar_side(std::shared_ptr<const cad_import::ExactSurface> surface, do
   return side;
 }
 
-/// The power of a toric front is the same in either parameters: on the pole, so near that the second derivatives fail, and
-/// where they do well.
+/// The power of a toric front is the same in either parameters: on the pole, so near that the second
+/// derivatives fail, and where they do well.
 TEST(LensEvaluator, PoleOfTheParametersOnTheAxis) {
   const auto front = std::make_shared<test::TwoCurvatureSurface>(0.012, 0.007, 0.4, 30, 30);
   const auto back = std::make_shared<test::ConicSurface>(0.005, 0, 30, 30);
@@ -89,8 +89,7 @@ TEST(LensEvaluator, PoleOfTheParametersOnTheAxis) {
   polar.mesh = side.mesh;
 
   const LensFrame frame{.front_vertex_mm = {0, 0, 0}, .back_vertex_mm = {0, 0, -4}};
-  const std::array<glm::dvec2, 5> points{
-      {{0, 0}, {3e-6, 2e-6}, {2e-4, -1e-4}, {-0.02, 0.01}, {4, -7}}};
+  const std::array<glm::dvec2, 5> points{{{0, 0}, {3e-6, 2e-6}, {2e-4, -1e-4}, {-0.02, 0.01}, {4, -7}}};
   const auto expected = LensEvaluator(plain, frame).at_points(points, {});
   const auto found = LensEvaluator(polar, frame).at_points(points, {});
   for (std::size_t i = 0; i < points.size(); ++i) {
