@@ -90,7 +90,8 @@ class MirrorSight {
   [[nodiscard]] std::uint8_t state_far(const glm::dvec3& direction) const;
 
   /// Greatest length over the eyes by which a place's reflection point lies inside the glass's outline, mm;
-  /// negative beside it, -infinity where no eye has one. Obstruction is not asked.
+  /// negative beside it. Where no eye has one: below -10 m, and the lower the farther the mirror looks past
+  /// the place. Obstruction is not asked.
   [[nodiscard]] double inside_glass_mm(const glm::dvec2& ground_mm) const;
 
   [[nodiscard]] const SightOptions& options() const { return options_; }
@@ -123,9 +124,10 @@ struct FieldAreas {
 /// How far the field reaches over an edge of the zone.
 struct EdgeMargin {
   glm::dvec2 from_mm{0}, to_mm{0};  ///< the edge, ground coordinates
-  double margin_mm = 0;  ///< least distance over the edge's places to the field's border: outwards where the
-                         ///< place is seen, else, negative, inwards. Limited to `limit_mm` either way.
-  double limit_mm = 0;
+  /// Least distance over the edge's places to the field's border: outwards where the place is seen; inwards,
+  /// negative, where it is not, at most through its part of the zone.
+  double margin_mm = 0;
+  double limit_mm = 0;  ///< farther was not looked
 };
 /// One per edge of the zone that is not shared with another part of it, by ambinocular sight (obstruction
 /// counts), at 33 places of the edge, to 1 mm.

@@ -53,7 +53,7 @@ class Judge {
 
   void field() {
     const double zone = e_.field.zone_m2;
-    if (const RuleFigure* f = figure("coverage_min"); f && zone > 0) {
+    if (const RuleFigure* f = figure("coverage_min"); f && e_.zone_required) {
       const double share = 100 * e_.field.reflected_m2 / zone, slack = 100 * e_.field.uncertain_m2 / zone;
       add(*f, "share of the zone that the mirror shows, at least", share, *f->value,
           share >= *f->value - slack);
@@ -71,7 +71,7 @@ class Judge {
         rest_on_zone();
       }
     }
-    if (const RuleFigure* f = figure("obstruction_max"); f && zone > 0) {
+    if (const RuleFigure* f = figure("obstruction_max"); f && e_.zone_required) {
       const double share = 100 * e_.field.obstructed_m2 / zone;
       add(*f, "share of the zone that the vehicle hides, at most", share, *f->value, share <= *f->value);
       rest_on_zone();

@@ -145,19 +145,27 @@ AimSummary aim_mirror(const SceneFile& scene, std::size_t optic, const optics::M
   return summary;
 }
 
+std::vector<optics::EdgeMargin> margins_on_road(const optics::MirrorSight& sight,
+                                                const std::vector<optics::GroundPolygon>& zone,
+                                                double far_mm) {
+  auto margins = optics::field_margins(sight, zone);
+  std::erase_if(margins, [&](const auto& m) { return m.from_mm.x >= far_mm && m.to_mm.x >= far_mm; });
+  return margins;
+}
+
 void measure_road(const optics::MirrorGlass& glass, const optics::SightOptions& options,
-                  const MirrorEvaluationOptions& asked, double direct_view_rad, MirrorEvaluation& e) {
+                  double direct_view_rad, MirrorEvaluation& e) {
   const optics::MirrorSight sight(glass, options);
   for (std::size_t eye = 0; eye < options.eyes_mm.size(); ++eye)
     e.outlines.push_back(optics::field_outline(sight, eye, e.vehicle.far_mm));
-  if (!asked.rule) e.zone = {around_outlines(e)};
+  if (!e.zone_required) e.zone = {around_outlines(e)};
   const auto zone = polygons_of(e.zone);
   if (!zone.empty()) {
     optics::RegionOptions region;
-    if (!asked.rule) region.cell_mm = 1000;
+    if (!e.zone_required) region.cell_mm = 1000;
     e.field = optics::measure_field(sight, zone, region);
-    if (asked.rule) e.margins = optics::field_margins(sight, zone);
-    if (asked.rule && e.map.spherical_share < kWhollySpherical && e.map.spherical_share > 0) {
+    if (e.zone_required) e.margins = margins_on_road(sight, zone, e.vehicle.far_mm);
+    if (e.zone_required && e.map.spherical_share < kWhollySpherical && e.map.spherical_share > 0) {
       optics::SightOptions spherical = options;
       spherical.part = [&e](const optics::GlassPoint& p) { return optics::in_spherical_part(e.map, p); };
       e.spherical_field = optics::measure_field(optics::MirrorSight(glass, spherical), zone);
@@ -212,6 +220,7 @@ MirrorEvaluation evaluate_mirror(const SceneFile& scene, const MirrorEvaluationO
     e.rule_edition = options.rule->edition;
     e.rule_note = options.rule->note;
     e.zone = required_zone(*options.rule, placement_for(*options.rule, scene, e.vehicle));
+    e.zone_required = !e.zone.empty();
   }
   optics::SightOptions sight;
   sight.eyes_mm = e.vehicle.eyes_mm;
@@ -219,14 +228,14 @@ MirrorEvaluation evaluate_mirror(const SceneFile& scene, const MirrorEvaluationO
   sight.vehicle = vehicle.body.get();
   sight.attached = vehicle.attached.get();
   if (options.aim) {
-    if (e.zone.empty())
+    if (!e.zone_required)
       throw Error(scene.scene.file, "mirror '" + e.mirror + "'", "there is no zone to aim at",
                   "give --rule with one that requires a field on the ground");
     e.aim = aim_mirror(scene, optic, glass, *options.aim, polygons_of(e.zone), sight);
     sight.pose = e.aim->aim.pose;
   }
   measure_view(glass, options, sight, e);
-  measure_road(glass, sight, options, scene.evaluation.direct_view_rad, e);
+  measure_road(glass, sight, scene.evaluation.direct_view_rad, e);
   if (options.rule) e.clauses = judge_mirror(*options.rule, e);
   for (ZonePart& part : e.zone) part.figure = nullptr;  // the rule may go before the result does
   return e;

@@ -67,12 +67,13 @@ struct MirrorEvaluation {
   optics::ViewSummary view;
   double reflectance = 0;  ///< luminance of the scene's reflectance, 0..1
   VehicleSummary vehicle;
-  std::vector<ZonePart>
-      zone;  ///< the rule's, or, without one, the ground around the mirror's field; `figure` is null
+  /// The rule's, or, where it requires none, the ground around the mirror's field. ZonePart::figure is null.
+  std::vector<ZonePart> zone;
+  bool zone_required = false;
   optics::FieldAreas field;
   std::optional<optics::FieldAreas> spherical_field;  ///< of the spherical part alone, where there is another
   bool horizon_seen = false;                          ///< straight back, as if nothing were in the way
-  std::vector<optics::EdgeMargin> margins;
+  std::vector<optics::EdgeMargin> margins;            ///< of a required zone, but for the cut for the horizon
   optics::BlindZone blind;
   optics::GroundPolygon blind_region;
   std::vector<std::vector<glm::dvec2>> outlines;  ///< of the glass on the ground, by eye

@@ -86,7 +86,7 @@ ordered_json map_json(const MirrorEvaluation& e) {
 
 ordered_json field_json(const MirrorEvaluation& e) {
   const optics::FieldAreas& f = e.field;
-  const bool required = !e.rule_id.empty() && f.zone_m2 > 0;
+  const bool required = e.zone_required;
   ordered_json zone = ordered_json::array(), margins = ordered_json::array(),
                outlines = ordered_json::array();
   for (const ZonePart& part : e.zone) zone.push_back(polygon(part.polygon));

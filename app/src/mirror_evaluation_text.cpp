@@ -56,7 +56,7 @@ void add_glass(const MirrorEvaluation& e, Lines& lines) {
 
 void add_field(const MirrorEvaluation& e, Lines& lines) {
   const optics::FieldAreas& f = e.field;
-  if (!e.rule_id.empty() && f.zone_m2 > 0)
+  if (e.zone_required)
     lines.add("field on the ground: %.3f of %.3f m2 required, %.2f %%", f.covered_m2, f.zone_m2,
               100 * f.covered_m2 / f.zone_m2);
   else
@@ -68,8 +68,7 @@ void add_field(const MirrorEvaluation& e, Lines& lines) {
   for (const optics::EdgeMargin& m : e.margins)
     lines.add("  margin over the edge (%.1f, %.1f) to (%.1f, %.1f) m: %s%.2f m", m.from_mm.x / 1000,
               m.from_mm.y / 1000, m.to_mm.x / 1000, m.to_mm.y / 1000,
-              std::abs(m.margin_mm) >= m.limit_mm ? (m.margin_mm < 0 ? "beyond " : "at least ") : "",
-              m.margin_mm / 1000);
+              m.margin_mm >= m.limit_mm ? "at least " : "", m.margin_mm / 1000);
   if (e.horizon) lines.add("level angle at the horizon %.2f deg", glm::degrees(e.horizon->angle_rad()));
   if (e.blind.blind_m2 > 0)
     lines.add(
@@ -79,10 +78,11 @@ void add_field(const MirrorEvaluation& e, Lines& lines) {
 }
 
 void add_aim(const AimSummary& a, Lines& lines) {
-  lines.add("aimed: %.3f deg about up%s, %.3f deg up%s; the zone is seen to %.2f %% (before: %.2f %%)",
-            glm::degrees(a.aim.yaw_rad), a.aim.at_yaw_stop ? " (at the stop)" : "",
-            glm::degrees(a.aim.pitch_rad), a.aim.at_pitch_stop ? " (at the stop)" : "", 100 * a.aim.coverage,
-            100 * a.aim.coverage_before);
+  lines.add(
+      "aimed: yaw %.3f deg (to the left%s), pitch %.3f deg (up%s); of the zone's places %.2f %% are seen "
+      "(before: %.2f %%)",
+      glm::degrees(a.aim.yaw_rad), a.aim.at_yaw_stop ? "; at the stop" : "", glm::degrees(a.aim.pitch_rad),
+      a.aim.at_pitch_stop ? "; at the stop" : "", 100 * a.aim.coverage, 100 * a.aim.coverage_before);
   lines.add("  in the scene: rotate_deg = [%.4f, %.4f, %.4f], translate = [%.4f, %.4f, %.4f]", a.rotate_deg.x,
             a.rotate_deg.y, a.rotate_deg.z, a.translate.x, a.translate.y, a.translate.z);
 }

@@ -9,7 +9,7 @@
 
 namespace catoptra::app {
 
-/// kind = "mirror"; docs/rules.md says what each quantity, variable and unit means.
+/// kind = "mirror"; docs/mirror-rules.md says what each quantity, variable and unit means.
 [[nodiscard]] const RuleVocabulary& mirror_rule_words();
 
 /// Where a rule's zone lies on a vehicle: ground coordinates of optics::RoadFrame (behind, left), mm.

@@ -158,7 +158,10 @@ MirrorVehicle make_mirror_vehicle(const SceneFile& scene, std::size_t optic, con
   summary.eyes_mm = ocular_points(scene, options, middle, summary.road.left);
   summary.far_mm = options.far_mm.value_or(scene.evaluation.far_mm);
   const auto body = body_of(scene, optic);
-  if (scene.evaluation.vehicle.empty() && !body.empty())
+  const bool other_things = std::any_of(body.begin(), body.end(), [&](std::size_t i) {
+    return !belongs_to(scene.surrounding_sources[i], optic);
+  });
+  if (scene.evaluation.vehicle.empty() && other_things)
     vehicle.notes.push_back(
         "All surroundings count as the vehicle; evaluation.vehicle would name those that are.");
   set_planes(scene, body, optic, glass, vehicle);

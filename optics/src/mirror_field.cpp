@@ -37,14 +37,18 @@ double last_true(Holds&& holds, double limit, double step, double accuracy) {
   return limit;
 }
 
-/// Margin of one place of an edge; `outwards` is unit.
-double margin_at(const MirrorSight& sight, const glm::dvec2& place, const glm::dvec2& outwards,
-                 double limit) {
-  const bool here = seen(sight, place);
-  const double sign = here ? 1 : -1;
-  const double reach = last_true([&](double d) { return seen(sight, place + sign * d * outwards) == here; },
-                                 limit, kMarginStep_mm, kMarginAccuracy_mm);
-  return sign * reach;
+/// Margin of one place of an edge; `outwards` is unit. Inwards the part of the zone is the limit.
+double margin_at(const MirrorSight& sight, const GroundPolygon& part, const glm::dvec2& place,
+                 const glm::dvec2& outwards, double limit) {
+  if (seen(sight, place))
+    return last_true([&](double d) { return seen(sight, place + d * outwards); }, limit, kMarginStep_mm,
+                     kMarginAccuracy_mm);
+  return -last_true(
+      [&](double d) {
+        const glm::dvec2 inside = place - d * outwards;
+        return polygon_holds(part, inside) && !seen(sight, inside);
+      },
+      limit, kMarginStep_mm, kMarginAccuracy_mm);
 }
 
 bool shared(std::span<const GroundPolygon> zone, std::size_t own, const glm::dvec2& just_outside) {
@@ -67,8 +71,9 @@ std::optional<EdgeMargin> margin_of_edge(const MirrorSight& sight, std::span<con
   }
   if (places.empty()) return std::nullopt;
   std::vector<double> margins(places.size());
-  tbb::parallel_for(std::size_t(0), places.size(),
-                    [&](std::size_t i) { margins[i] = margin_at(sight, places[i], outwards, limit); });
+  tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t i) {
+    margins[i] = margin_at(sight, polygon, places[i], outwards, limit);
+  });
   result.margin_mm = *std::min_element(margins.begin(), margins.end());
   return result;
 }

@@ -13,6 +13,9 @@ namespace {
 /// The glass's own mesh and the rim around it are this close to where the eye's ray ends.
 constexpr double kBeforeGlass_mm = 0.5;
 
+/// Farther beside the glass than any reflection point on its continuation.
+constexpr double kBesideAny_mm = 1e4;
+
 }  // namespace
 
 glm::dvec3 RoadFrame::coordinates(const glm::dvec3& point_mm) const {
@@ -107,7 +110,10 @@ double MirrorSight::inside_glass_mm(const glm::dvec2& ground_mm) const {
   double best = -kInfinity;
   for (const ReflectionFinder& finder : finders_) {
     const auto found = finder.find({target, false});
-    if (!found) continue;
+    if (!found) {
+      best = std::max(best, -kBesideAny_mm * (1 + finder.miss_angle({target, false})));
+      continue;
+    }
     const glm::dvec3 offset = found->position_mm - glass_->frame().center_mm;
     best = std::max(best, distance_inside_mm(glass_->outlines(), {glm::dot(offset, glass_->frame().across),
                                                                   glm::dot(offset, glass_->frame().upward)}));

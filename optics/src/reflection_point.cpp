@@ -105,6 +105,14 @@ std::optional<ReflectionPoint> ReflectionFinder::find_on(int face, const SightTa
   return std::nullopt;
 }
 
+double ReflectionFinder::miss_angle(const SightTarget& target) const {
+  double cosine = -1;
+  for (const auto& starts : starts_)
+    for (const Start& start : starts)
+      cosine = std::max(cosine, glm::dot(start.reflected, towards(target, start.position)));
+  return std::acos(std::min(1.0, cosine));
+}
+
 std::optional<ReflectionPoint> ReflectionFinder::find(const SightTarget& target) const {
   std::optional<ReflectionPoint> beside;
   for (int face = 0; face < int(starts_.size()); ++face) {

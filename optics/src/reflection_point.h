@@ -35,6 +35,9 @@ class ReflectionFinder {
   /// none on the surface's reflecting side.
   [[nodiscard]] std::optional<ReflectionPoint> find(const SightTarget& target) const;
 
+  /// Least angle between the target and a reflected ray of the mesh, rad: how far the mirror looks past it.
+  [[nodiscard]] double miss_angle(const SightTarget& target) const;
+
   [[nodiscard]] const glm::dvec3& eye_mm() const { return eye_; }
 
  private:
