@@ -124,7 +124,41 @@ TEST(MirrorField, LevelAngleGrowsAsTheRadiusSays) {
   }
 }
 
-/// A box's two upright walls are enough: it is looked at from above and behind.
+/// Alhazen's problem: the reflection point on a sphere of `radius` about `center`, by bisection of the angle
+/// in the plane of eye, centre and target. Nothing of it is the program's.
+glm::dvec3 alhazen(const glm::dvec3& center, double radius, const glm::dvec3& eye, const glm::dvec3& target) {
+  const double to_eye = glm::distance(eye, center), to_target = glm::distance(target, center);
+  const glm::dvec3 e = (eye - center) / to_eye, g = (target - center) / to_target;
+  const double whole = std::acos(glm::dot(e, g));
+  const glm::dvec3 aside = glm::normalize(g - glm::dot(e, g) * e);
+  double low = 0, high = whole;
+  for (int i = 0; i < 80; ++i) {
+    const double t = (low + high) / 2, rest = whole - t;
+    const double incidence = std::atan2(to_eye * std::sin(t), to_eye * std::cos(t) - radius);
+    const double leaving = std::atan2(to_target * std::sin(rest), to_target * std::cos(rest) - radius);
+    (incidence < leaving ? low : high) = t;
+  }
+  return center + radius * (std::cos(low) * e + std::sin(low) * aside);
+}
+
+TEST(MirrorField, SphereShowsWhatAlhazensProblemSays) {
+  const double radius = 700;
+  const MirrorGlass glass(test::conic_mirror(radius, 0, 170, 110, 9, 9), kUp);
+  const MirrorSight sight(glass, sight_from({kEye}));
+  int seen = 0, hidden = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const glm::dvec2 place(600 + 250.0 * (i % 100), -12000 + 240.0 * (i / 100));
+    const glm::dvec3 at = alhazen({0, 0, -radius}, radius, kEye, sight.options().road.point(place));
+    const double inside = std::min(85 - std::abs(at.x), 55 - std::abs(at.y));
+    if (std::abs(inside) < 1e-6) continue;  // on the border rounding decides
+    EXPECT_EQ((sight.state(place) & kSeen[0]) != 0, inside > 0) << place.x << " " << place.y;
+    ++(inside > 0 ? seen : hidden);
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_GT(hidden, 1000);
+}
+
+/// An upright board across the road.
 cad_import::TriangleMesh board(double x0, double x1, double y0, double y1, float z) {
   cad_import::TriangleMesh mesh;
   mesh.positions = {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
