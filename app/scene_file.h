@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,10 +23,38 @@ struct OpticSource {
   glm::dmat4 placement{1};                   ///< of the (first) file in the scene, mm
 };
 
+/// Where an entry of scene.surroundings came from.
+struct SurroundingSource {
+  std::string name;  ///< the entry's name, or its file's without suffix
+  /// The file's own optics, if it is the rest (back, edge, housing) of an optic's file: indices in
+  /// scene.optics.
+  std::vector<std::size_t> optics;
+};
+
+/// The table [evaluation]: the vehicle around a mirror, as the rules see it. What is left out is taken from
+/// the rest of the scene when it is needed.
+struct EvaluationSettings {
+  std::optional<glm::dvec3> forward;
+  glm::dvec3 ground_mm{0};                   ///< a point of the ground
+  std::vector<glm::dvec3> ocular_points_mm;  ///< two, or none
+  std::optional<glm::dvec3> eye_mm;          ///< midpoint of the ocular points
+  std::optional<glm::dvec3> r_point_mm;
+  double ocular_spacing_mm = 65;
+  std::optional<glm::dvec3> left_side_mm, right_side_mm;  ///< points of the vehicle's side planes
+  std::optional<glm::dvec3> median_mm;                    ///< a point of its median plane
+  std::optional<bool> driver_left;
+  std::vector<std::string> vehicle;  ///< names of surroundings; empty: all of them
+  double far_mm = 100000;            ///< stands for the horizon where areas are measured
+  double direct_view_rad = 1.5707963267948966;
+};
+
 /// A scene and the CAD data under it.
 struct SceneFile {
   render::Scene scene;
-  std::vector<OpticSource> optic_sources;  ///< one per entry of scene.optics, in its order
+  std::vector<OpticSource> optic_sources;              ///< one per entry of scene.optics, in its order
+  std::vector<SurroundingSource> surrounding_sources;  ///< one per entry of scene.surroundings, in its order
+  EvaluationSettings evaluation;
+  double unit_mm = 1;  ///< length of the file's unit
 };
 
 struct SceneReadOptions {

@@ -109,15 +109,13 @@ void add_make_options(CLI::App& app, MakeOptions& options) {
 }  // namespace
 
 std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common) {
-  CLI::App* mirror = add_subcommand(root, common, "mirror", "Make mirror glasses");
+  CLI::App* mirror = add_subcommand(root, common, "mirror", "Make and evaluate mirrors");
   mirror->require_subcommand(0, 1);
   auto options = std::make_shared<MakeOptions>();
   CLI::App* make = add_subcommand(*mirror, common, "make",
                                   "Write a mirror glass as a STEP solid with the faces Glass, Back and Edge");
   add_make_options(*make, *options);
-  CLI::App* evaluate = mirror->add_subcommand("evaluate", "Not in this version")->group("")->prefix_command();
-  return {{make, [options] { return run_make(*options); }},
-          {evaluate, []() -> int { throw UsageError("'catoptra mirror evaluate' is not in this version"); }}};
+  return {{make, [options] { return run_make(*options); }}, add_mirror_evaluate_command(*mirror, common)};
 }
 
 std::vector<Command> add_reserved_commands(CLI::App& root, CommonOptions&) {

@@ -39,16 +39,19 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
   const toml::table parsed = parse_toml(text, name);
   const TomlTable root(
       parsed, name, "",
-      {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar", "render"});
+      {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar",
+                        "render", "evaluation"});
   const SceneContext context{name, folder, read_unit_mm(root), options};
 
   SceneFile result;
   render::Scene& scene = result.scene;
   scene.file = name;
+  result.unit_mm = context.unit_mm;
   scene.camera = read_camera(root, context);
   scene.environment = read_environment(root, context);
   scene.lights = read_lights(root, context);
   scene.settings = read_render_settings(root, scene.warnings);
+  result.evaluation = read_evaluation(root, context);
   refuse_what_cannot_be_shown(root, context);
   for (const render::Light& light : scene.lights)
     if (light.shadows) {
@@ -58,6 +61,7 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
   read_surroundings(root, context, result);
   read_mirrors(root, context, result);
   read_lenses(root, context, result);
+  result.surrounding_sources.resize(scene.surroundings.size());  // rims of lenses
   return result;
 }
 

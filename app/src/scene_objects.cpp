@@ -19,8 +19,9 @@ namespace {
 struct MirrorFile {
   FileEntry entry;
   cad_import::CadModel model;
-  std::set<int> reflecting;  ///< face indices taken by some mirror; the rest becomes surroundings
-  glm::vec3 color{0.8f};     ///< of the rest, where the file has none
+  std::set<int> reflecting;              ///< face indices taken by some mirror; the rest becomes surroundings
+  glm::vec3 color{0.8f};                 ///< of the rest, where the file has none
+  std::vector<std::size_t> optics = {};  ///< the mirrors, as indices in the scene
 };
 
 MirrorFile& open_mirror_file(std::vector<MirrorFile>& files, const FileEntry& entry,
@@ -29,7 +30,7 @@ MirrorFile& open_mirror_file(std::vector<MirrorFile>& files, const FileEntry& en
       std::find_if(files.begin(), files.end(), [&](const MirrorFile& f) { return f.entry == entry; });
   if (known != files.end()) return *known;
   files.push_back(
-      {entry, cad_import::import_cad(entry.path, import_options(entry, context)), {}, glm::vec3(0.8f)});
+      {entry, cad_import::import_cad(entry.path, import_options(entry, context)), {}, glm::vec3(0.8f), {}});
   return files.back();
 }
 
@@ -87,6 +88,7 @@ void read_mirror(const TomlTable& table, const SceneContext& context, std::vecto
   optics::Optic optic = make_mirror(table, file.model, faces, result.scene);
   optic.name = name.value_or(default_optic_name(result.scene.optics, entry.path));
   result.scene.optics.push_back(std::move(optic));
+  file.optics.push_back(result.scene.optics.size() - 1);
   result.optic_sources.push_back({file.model, faces, {entry.path}, entry.placement});
 }
 
@@ -188,13 +190,14 @@ void read_surroundings(const TomlTable& root, const SceneContext& context, Scene
   for (const toml::table* found : root.tables("surrounding")) {
     const TomlTable table(*found, context.name, "surrounding",
                           {"name", "file", "translate", "rotate_deg", "scale", "unit", "color"});
-    (void)table.text("name");
+    const auto name = table.text("name");
     const FileEntry entry = read_file_entry(table, context);
     auto options = import_options(entry, context);
     if (const auto color = table.vec3("color", {0, 1})) options.color = *color;
     auto mesh = cad_import::import_mesh(entry.path, options);
     result.scene.warnings.insert(result.scene.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     result.scene.surroundings.push_back(std::move(mesh));
+    result.surrounding_sources.push_back({name.value_or(entry.path.stem().string()), {}});
   }
 }
 
@@ -210,7 +213,10 @@ void read_mirrors(const TomlTable& root, const SceneContext& context, SceneFile&
     result.scene.warnings.insert(result.scene.warnings.end(), file.model.warnings.begin(),
                                  file.model.warnings.end());
     const std::vector<int> reflecting(file.reflecting.begin(), file.reflecting.end());
+    const std::size_t before = result.scene.surroundings.size();
     add_remaining_faces(file.model, reflecting, file.color, result.scene);
+    if (result.scene.surroundings.size() > before)
+      result.surrounding_sources.push_back({file.entry.path.stem().string(), file.optics});
   }
 }
 

@@ -35,7 +35,7 @@ TEST(Documentation, NamesEveryOptionOfTheCommandLine) {
 TEST(Documentation, NamesEveryCommand) {
   const std::string text = document("command-line.md");
   for (const char* command : {"info", "render", "compare", "bench", "lens make", "lens evaluate",
-                              "mirror make", "man", "completion"})
+                              "mirror make", "mirror evaluate", "man", "completion"})
     EXPECT_NE(text.find("## catoptra " + std::string(command)), std::string::npos) << command;
 }
 
@@ -48,7 +48,8 @@ TEST(Documentation, EveryKeyOfTheSceneFileIsRead) {
     for (const std::string& full_key : all_matches(heading, "([a-z]+\\.[a-z_]+)")) {
       const auto dot = full_key.find('.');
       const std::string table = full_key.substr(0, dot), key = full_key.substr(dot + 1);
-      const bool single = table == "camera" || table == "environment" || table == "render";
+      const bool single =
+          table == "camera" || table == "environment" || table == "render" || table == "evaluation";
       std::string scene(single ? "[" : "[[");
       scene.append(table).append(single ? "]\n" : "]]\n").append(key).append(" = 2020-01-01\n");
       try {
