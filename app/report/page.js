@@ -1,0 +1,116 @@
+// The page's own small tools: elements, numbers, tables, plots. Nothing here knows what a lens is.
+"use strict";
+
+/** Makes an element; strings become text, never markup. */
+function make(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+
+/** A number with `digits` decimals and a true minus sign; a dash where there is none. */
+function shown(value, digits = 2) {
+  if (!isNumber(value)) return "–";
+  const text = value.toFixed(digits);
+  return (Number(text) === 0 ? (0).toFixed(digits) : text).replace("-", "−");
+}
+
+/** The same with a plus sign, as powers are written. */
+function signed(value, digits = 2) {
+  const text = shown(value, digits);
+  return isNumber(value) && Number(value.toFixed(digits)) > 0 ? "+" + text : text;
+}
+
+function facts(entries) {
+  const list = make("dl", {class: "facts"});
+  for (const [name, value] of entries)
+    if (value !== undefined && value !== null && value !== "")
+      list.append(make("div", {}, make("dt", {}, name), make("dd", {}, String(value))));
+  return list;
+}
+
+/** Pass, fail, or pass and fail that rest on a figure nobody has read in its source. */
+function verdict(pass, unverified = false) {
+  if (pass === null || pass === undefined) return make("span", {class: "quiet"}, "not judged");
+  const word = pass ? "pass" : "fail";
+  return make("span", {class: "verdict " + (unverified && pass ? "doubt" : word)}, unverified ? word + " (unverified figure)" : word);
+}
+
+/** columns: [{title, value(row), digits?, sign?}]; rows sort by a click on a title where `sortable`. */
+function table(caption, columns, rows, sortable = false) {
+  const body = make("tbody");
+  const cell = (column, row) => {
+    const value = column.value(row);
+    if (value instanceof Node) return make("td", {}, value);
+    if (isNumber(value)) return make("td", {class: "number"}, column.sign ? signed(value, column.digits) : shown(value, column.digits));
+    return make("td", {class: column.digits === undefined ? null : "number"}, value === null || value === undefined ? "–" : String(value));
+  };
+  const fill = (ordered) => body.replaceChildren(...ordered.map((row) => make("tr", {}, ...columns.map((column) => cell(column, row)))));
+  const head = make("tr");
+  let sortedBy = null, descending = false;
+  columns.forEach((column, index) => {
+    const title = make("th", {scope: "col", class: column.digits === undefined ? null : "number"});
+    if (sortable) {
+      const button = make("button", {class: "sort", type: "button"}, column.title);
+      button.addEventListener("click", () => {
+        descending = sortedBy === index ? !descending : false;
+        sortedBy = index;
+        const by = (a, b) => {
+          const x = column.value(a), y = column.value(b);
+          if (isNumber(x) && isNumber(y)) return x - y;
+          return String(x ?? "").localeCompare(String(y ?? ""));
+        };
+        fill([...rows].sort((a, b) => (descending ? -by(a, b) : by(a, b))));
+      });
+      title.append(button);
+    } else {
+      title.append(column.title);
+    }
+    head.append(title);
+  });
+  fill(rows);
+  return make("div", {class: "table"},
+              make("table", {}, caption ? make("caption", {}, caption) : null, make("thead", {}, head), body));
+}
+
+function details(title, ...children) {
+  return make("details", {}, make("summary", {}, title), ...children);
+}
+
+const kFont = {family: "system-ui, DejaVu Sans, sans-serif", size: 12, color: "#1d2733"};
+const drawn = [];
+
+/** A figure with a caption and a plot that follows the window's width. Drawn once it is in the page. */
+function figure(title, unit, traces, layout = {}) {
+  const place = make("div", {class: "plot", role: "img", "aria-label": title});
+  drawn.push(() => Plotly.newPlot(place, traces, {
+    font: kFont, margin: {l: 54, r: 12, t: 10, b: 44}, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "#ffffff",
+    hovermode: "closest", legend: {orientation: "h", y: 1.12}, ...layout
+  }, {responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"]}));
+  return make("figure", {class: "figure"},
+              make("figcaption", {}, title + " ", unit ? make("span", {}, unit) : null), place);
+}
+
+/** A contour map of z over a grid of x and y (rows of z belong to y); `signedValues` puts white at 0. */
+function contourMap(title, unit, grid, values, text, axes, signedValues) {
+  const flat = values.flat().filter(isNumber);
+  const most = Math.max(1e-9, ...flat.map(Math.abs));
+  const range = signedValues ? {zmin: -most, zmax: most, colorscale: "RdBu", reversescale: true}
+                             : {zmin: 0, zmax: most, colorscale: "Viridis"};
+  return figure(title, unit, [{
+    type: "contour", x: grid.x, y: grid.y, z: values, text, hovertemplate: "%{text}<extra></extra>",
+    contours: {coloring: "heatmap", showlabels: true, labelfont: {size: 11}}, line: {width: 0.7, color: "#33404d"},
+    connectgaps: false, colorbar: {thickness: 12, outlinewidth: 0}, ncontours: 12, ...range
+  }], {xaxis: {title: {text: axes.x}, zeroline: false, constrain: "domain"},
+       yaxis: {title: {text: axes.y}, zeroline: false, scaleanchor: "x", constrain: "domain"}});
+}
+
+function drawAll() {
+  return Promise.all(drawn.map((draw) => draw()));
+}
