@@ -54,6 +54,10 @@ struct WearingPosition {
   Eye eye = Eye::right;            ///< temporal is -x for the right eye, +x for the left
 };
 
+/// The wearer's axes in model coordinates, with the lens's vertices: z straight ahead, x and y as for someone who
+/// faces the wearer. The lens's own axes where it is not tilted.
+[[nodiscard]] LensFrame wearer_frame(const LensFrame& lens, const WearingPosition& position);
+
 struct EvaluationOptions {
   EvaluationMode mode = EvaluationMode::lensmeter;
   WearingPosition position;

@@ -22,12 +22,12 @@ const prismOf = (p) => Math.hypot(p.prism_h, p.prism_v);
 const meanOf = (p) => p.sphere_d + p.cylinder_d / 2;
 
 const kLensMaps = [
-  {title: "Mean power", unit: "D", value: meanOf, signed: true},
-  {title: "Mean power error", unit: "D, against the reference point", value: (p) => p.mean_power_error_d, signed: true},
-  {title: "Oblique astigmatism", unit: "D", value: (p) => Math.abs(p.oblique_astigmatism_d), signed: false},
-  {title: "Prism", unit: "Δ", value: prismOf, signed: false},
-  {title: "Distortion", unit: "%", value: (p) => (isNumber(p.distortion_percent) ? p.distortion_percent : NaN), signed: true},
-  {title: "Transverse colour", unit: "Δ between F and C", value: (p) => Math.abs(p.tca_d), signed: false}
+  {title: "Mean power", unit: "D", value: meanOf, scale: "range"},
+  {title: "Mean power error", unit: "D, against the reference point", value: (p) => p.mean_power_error_d, scale: "about zero"},
+  {title: "Oblique astigmatism", unit: "D", value: (p) => Math.abs(p.oblique_astigmatism_d), scale: "from zero"},
+  {title: "Prism", unit: "Δ", value: prismOf, scale: "from zero"},
+  {title: "Distortion", unit: "%", value: (p) => (isNumber(p.distortion) ? 100 * p.distortion : NaN), scale: "about zero"},
+  {title: "Transverse colour", unit: "Δ between F and C", value: (p) => Math.abs(p.tca_d), scale: "from zero"}
 ];
 
 function lensHover(p, map) {
@@ -37,49 +37,62 @@ function lensHover(p, map) {
   return lines.join("<br>");
 }
 
+const gazeGrid = (points) => gridOf(points, (p) => p.gaze_h_deg, (p) => p.gaze_v_deg);
+const placeGrid = (points) => gridOf(points, (p) => p.x_mm, (p) => p.y_mm);
+
 function lensMaps(points, byGaze) {
-  const x = byGaze ? (p) => p.gaze_h_deg : (p) => p.x_mm, y = byGaze ? (p) => p.gaze_v_deg : (p) => p.y_mm;
-  const grid = gridOf(points, x, y);
+  const grid = byGaze ? gazeGrid(points) : placeGrid(points);
   if (!grid) return null;
-  const axes = byGaze ? {x: "gaze to the right of the drawing, °", y: "gaze up, °"} : {x: "x, mm", y: "y, mm"};
+  const axes = byGaze ? {x: "gaze to the right, seen from before the wearer, °", y: "gaze up, °"} : {x: "to the right, seen from before the wearer, mm", y: "up, mm"};
   const plots = make("div", {class: "plots"});
   for (const map of kLensMaps) {
     const values = grid.cells.map((row) => row.map((p) => (p ? map.value(p) : NaN)));
     if (!values.flat().some(isNumber)) continue;
     const clean = values.map((row) => row.map((v) => (isNumber(v) ? v : null)));
     const text = grid.cells.map((row) => row.map((p) => (p ? lensHover(p, map) : "")));
-    plots.append(contourMap(map.title, map.unit, grid, clean, text, axes, map.signed));
+    plots.append(contourMap(map.title, map.unit, grid, clean, text, axes, map.scale));
   }
   return plots;
 }
 
-/** Tangential and sagittal power along a line of points through the middle. */
+/** Power along the meridian at `angle_deg` from the horizontal: S + C sin^2 of the angle to the axis. */
+function powerAlong(p, angle_deg) {
+  const sine = Math.sin((angle_deg - p.axis_deg) * Math.PI / 180);
+  return p.sphere_d + p.cylinder_d * sine * sine;
+}
+
+/** Tangential and sagittal power along a line of points through the middle; there along and across the line. */
 function lensProfile(points, byGaze) {
   const plots = make("div", {class: "plots"});
-  const lines = [["horizontal", byGaze ? (p) => p.gaze_v_deg : (p) => p.y_mm, byGaze ? (p) => p.gaze_h_deg : (p) => p.x_mm],
-                 ["vertical", byGaze ? (p) => p.gaze_h_deg : (p) => p.x_mm, byGaze ? (p) => p.gaze_v_deg : (p) => p.y_mm]];
-  for (const [name, across, along] of lines) {
+  const lines = [["horizontal", 0, byGaze ? (p) => p.gaze_v_deg : (p) => p.y_mm, byGaze ? (p) => p.gaze_h_deg : (p) => p.x_mm],
+                 ["vertical", 90, byGaze ? (p) => p.gaze_h_deg : (p) => p.x_mm, byGaze ? (p) => p.gaze_v_deg : (p) => p.y_mm]];
+  for (const [name, angle_deg, across, along] of lines) {
     const line = points.filter((p) => Math.abs(across(p)) < 1e-6).sort((a, b) => along(a) - along(b));
     if (line.length < 3) continue;
+    const middle = (p) => Math.abs(along(p)) < 1e-6;
     const trace = (label, value, dash) => ({type: "scatter", mode: "lines+markers", name: label, line: {dash}, marker: {size: 4},
                                             x: line.map(along), y: line.map(value),
                                             hovertemplate: `${label} %{y:.3f} D at %{x:.1f}<extra></extra>`});
     plots.append(figure(`Power along the ${name} line`, "D",
-                        [trace("tangential", (p) => p.tangential_d, "solid"), trace("sagittal", (p) => p.sagittal_d, "dash"),
+                        [trace("tangential", (p) => (middle(p) ? powerAlong(p, angle_deg) : p.tangential_d), "solid"),
+                         trace("sagittal", (p) => (middle(p) ? powerAlong(p, angle_deg + 90) : p.sagittal_d), "dash"),
                          trace("mean", meanOf, "dot")],
                         {xaxis: {title: {text: byGaze ? "gaze, °" : "mm"}}, yaxis: {title: {text: "D"}}}));
   }
   return plots.childElementCount ? plots : null;
 }
 
-function limitsTable(limits) {
-  if (!limits || !limits.length) return null;
-  return make("div", {}, make("h3", {}, "Limits"), table("", [
+function limitsTable(lens) {
+  if (!lens.limits || !lens.limits.length) return null;
+  const rule = lens.rule || {};
+  const title = make("h3", {}, `Limits: ${rule.title || ""} `, verdict(rule.pass, rule.certainty === "unverified"));
+  return make("div", {}, title, make("p", {class: "quiet"}, [rule.edition, rule.lens_type, rule.note].filter(Boolean).join(" · ")), table("", [
     {title: "Clause", value: (l) => l.clause}, {title: "Requirement", value: (l) => l.requirement},
-    {title: "Value", value: (l) => l.value, digits: 3, sign: true}, {title: "Limit", value: (l) => l.limit, digits: 3},
+    {title: "Ordered", value: (l) => l.ordered, digits: 3, sign: true}, {title: "Measured", value: (l) => l.value, digits: 3, sign: true},
+    {title: "Deviation", value: (l) => l.deviation, digits: 3, sign: true}, {title: "Limit", value: (l) => l.limit, digits: 3},
     {title: "Unit", value: (l) => l.unit}, {title: "Verdict", value: (l) => verdict(l.pass, l.certainty === "unverified")},
-    {title: "Figure", value: (l) => l.certainty}
-  ], limits));
+    {title: "Certainty of the figure", value: (l) => l.certainty}
+  ], lens.limits), ...(lens.limits_not_judged || []).map((n) => make("p", {class: "quiet"}, `Not judged: ${n.quantity}: ${n.reason}`)));
 }
 
 function lensSection(lens) {
@@ -94,9 +107,12 @@ function lensSection(lens) {
     ["Spectacle magnification", isNumber(lens.spectacle_magnification) ? shown(lens.spectacle_magnification, 4) : null],
     ["Points", blocked ? `${points.length}; ${blocked} more let no ray through` : `${points.length}`]
   ]));
-  if (lens.picture) section.append(make("p", {class: "picture"}, make("img", {src: lens.picture, alt: `What is seen through ${lens.lens}`})));
-  section.append(limitsTable(lens.limits) || "");
-  const byGaze = !(lens.points_over === "lens");
+  if (lens.picture)
+    section.append(make("figure", {class: "picture"}, make("img", {src: lens.picture, alt: `A square grid seen through ${lens.lens}`}),
+                        make("figcaption", {}, "What the wearer sees: a wall 2 m away with a square grid (5° straight ahead), the red lines through the middle. " +
+                                               "The wearer looks out, so this is the other way round than the maps.")));
+  section.append(limitsTable(lens) || "");
+  const byGaze = Boolean(gazeGrid(points) || !placeGrid(points));
   section.append(lensMaps(points, byGaze) || "", lensProfile(points, byGaze) || "");
   section.append(details(`All ${points.length} points`, table("", [
     {title: "Gaze h, °", value: (p) => p.gaze_h_deg, digits: 1, sign: true}, {title: "v, °", value: (p) => p.gaze_v_deg, digits: 1, sign: true},

@@ -90,19 +90,27 @@ const drawn = [];
 function figure(title, unit, traces, layout = {}) {
   const place = make("div", {class: "plot", role: "img", "aria-label": title});
   drawn.push(() => Plotly.newPlot(place, traces, {
-    font: kFont, margin: {l: 54, r: 12, t: 10, b: 44}, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "#ffffff",
-    hovermode: "closest", legend: {orientation: "h", y: 1.12}, ...layout
+    font: kFont, margin: {l: 54, r: 12, t: 34, b: 44}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#9aa5b1", activecolor: "#1d2733"},
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "#ffffff",
+    hovermode: "closest", legend: {orientation: "h", x: 0, y: 1, yanchor: "bottom"}, ...layout
   }, {responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"]}));
   return make("figure", {class: "figure"},
               make("figcaption", {}, title + " ", unit ? make("span", {}, unit) : null), place);
 }
 
-/** A contour map of z over a grid of x and y (rows of z belong to y); `signedValues` puts white at 0. */
-function contourMap(title, unit, grid, values, text, axes, signedValues) {
+/**
+ * A contour map of z over a grid of x and y (rows of z belong to y). `scale`: "about zero" (two colours that meet at 0),
+ * "from zero", or "range" (from the least to the greatest value).
+ */
+function contourMap(title, unit, grid, values, text, axes, scale) {
   const flat = values.flat().filter(isNumber);
-  const most = Math.max(1e-9, ...flat.map(Math.abs));
-  const range = signedValues ? {zmin: -most, zmax: most, colorscale: "RdBu", reversescale: true}
-                             : {zmin: 0, zmax: most, colorscale: "Viridis"};
+  const least = flat.reduce((a, b) => Math.min(a, b)), greatest = flat.reduce((a, b) => Math.max(a, b));
+  const most = Math.max(1e-3, -least, greatest);  // a map of nothing but rounding shows one colour
+  const range = {
+    "about zero": {zmin: -most, zmax: most, colorscale: "RdBu"},
+    "from zero": {zmin: 0, zmax: most, colorscale: "Viridis"},
+    "range": {zmin: least, zmax: Math.max(greatest, least + 1e-3), colorscale: "Cividis"}
+  }[scale];
   return figure(title, unit, [{
     type: "contour", x: grid.x, y: grid.y, z: values, text, hovertemplate: "%{text}<extra></extra>",
     contours: {coloring: "heatmap", showlabels: true, labelfont: {size: 11}}, line: {width: 0.7, color: "#33404d"},

@@ -5,6 +5,7 @@
 
 #include "app/src/commands.h"
 #include "app/src/lens_evaluate_options.h"
+#include "app/src/lens_page.h"
 #include "app/src/lens_report_writers.h"
 #include "app/src/output_file.h"
 #include "app/src/report.h"
@@ -26,7 +27,7 @@ void add_map(const LensEvaluateOptions& options, const LensSource& source, LensR
   }
 }
 
-void write_results(const LensReport& report, const LensEvaluateOptions& options) {
+void write_results(const LensReport& report, const LensSource& source, const LensEvaluateOptions& options) {
   if (!options.json.empty()) write_text(options.json, json_text(lens_report_json(report)));
   const std::string limits = lens_limits_csv(report);
   if (options.csv == "-") {
@@ -37,7 +38,8 @@ void write_results(const LensReport& report, const LensEvaluateOptions& options)
     beside.replace_extension(".limits.csv");
     if (!limits.empty()) write_text(beside, limits);
   }
-  if (options.json != "-" && options.csv != "-") write_text("-", lens_report_text(report));
+  if (!options.html.empty()) write_text(options.html, lens_page(report, source));
+  if (options.json != "-" && options.csv != "-" && options.html != "-") write_text("-", lens_report_text(report));
 }
 
 int run_evaluate(const LensEvaluateOptions& options, const CommonOptions& common) {
@@ -52,7 +54,7 @@ int run_evaluate(const LensEvaluateOptions& options, const CommonOptions& common
   const LensReport report = lens_report(source, asked);
   progress.clear();
   for (const std::string& warning : report.warnings) spdlog::warn(warning);
-  write_results(report, options);
+  write_results(report, source, options);
   if (options.strict && !report.verdict->passed()) return kExitCheckFailed;
   return kExitDone;
 }
@@ -152,6 +154,8 @@ Command add_lens_evaluate_command(CLI::App& lens, CommonOptions& common) {
       ->option_text("R.json");
   app->add_option("--csv", options->csv, "Write the points as a table, limits beside it as R.limits.csv")
       ->option_text("R.csv");
+  app->add_option("--html", options->html, "Write the report as one page with maps, to open in a browser")
+      ->option_text("R.html");
   return {app, [options, &common] { return run_evaluate(*options, common); }};
 }
 

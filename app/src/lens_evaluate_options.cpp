@@ -233,7 +233,8 @@ LensSourceOptions source_options(const LensEvaluateOptions& options) {
 }
 
 LensReportOptions report_options(const LensEvaluateOptions& options) {
-  if (options.json == "-" && options.csv == "-") throw UsageError("--json - excludes --csv -");
+  if ((options.json == "-") + (options.csv == "-") + (options.html == "-") > 1)
+    throw UsageError("only one of --json, --csv and --html can go to standard output");
   if (options.map_step && !options.points.empty()) throw UsageError("--map-step excludes --points");
   LensReportOptions report;
   report.evaluation = evaluation_options(options);

@@ -28,7 +28,7 @@ struct LensEvaluateOptions {
   std::optional<double> sphere, cyl, axis, prism, base, add, front_curve, thickness;
   bool strict = false;
 
-  std::string json, csv;
+  std::string json, csv, html;
 };
 
 /// Where the lens comes from. Throws UsageError for options that are wrong or do not go together.

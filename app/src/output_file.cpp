@@ -64,13 +64,17 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   });
 }
 
-void write_picture(const render::Frame& frame, const std::filesystem::path& file, bool with_geometry) {
-  if (file != "-") return render::write_image(frame, file, with_geometry);
+std::string png_bytes(const render::Frame& frame) {
   const TemporaryFile temporary{std::filesystem::temp_directory_path() /
                                 ("catoptra" + std::to_string(getpid()) + ".png")};
   render::write_image(frame, temporary.path);
   std::ifstream stream(temporary.path, std::ios::binary);
-  write_standard_output(std::string(std::istreambuf_iterator<char>(stream), {}));
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+void write_picture(const render::Frame& frame, const std::filesystem::path& file, bool with_geometry) {
+  if (file != "-") return render::write_image(frame, file, with_geometry);
+  write_standard_output(png_bytes(frame));
 }
 
 void check_picture_path(const std::filesystem::path& file) {

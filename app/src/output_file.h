@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "render/frame.h"
@@ -16,6 +17,9 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// on an exception the temporary file is removed. Throws catoptra::Error where the rename fails.
 void write_renamed(const std::filesystem::path& file,
                    const std::function<void(const std::filesystem::path&)>& write);
+
+/// A picture as the bytes of a PNG file. Throws catoptra::Error.
+[[nodiscard]] std::string png_bytes(const render::Frame& frame);
 
 /// Writes a picture by its suffix, or as PNG to standard output for "-".
 void write_picture(const render::Frame& frame, const std::filesystem::path& file, bool with_geometry);

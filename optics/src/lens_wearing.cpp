@@ -21,6 +21,11 @@ Axes wearer_axes(const LensFrame& frame, const WearingPosition& position) {
           lens.to_model({-sw, cw * sp, cw * cp})};
 }
 
+LensFrame wearer_frame(const LensFrame& lens, const WearingPosition& position) {
+  const Axes axes = wearer_axes(lens, position);
+  return {lens.front_vertex_mm, lens.back_vertex_mm, axes.x, axes.y, axes.z};
+}
+
 glm::dvec3 gaze_direction(const Axes& axes, const glm::dvec2& gaze_rad) {
   return glm::normalize(axes.to_model({std::tan(gaze_rad.x), std::tan(gaze_rad.y), 1}));
 }
