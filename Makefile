@@ -19,5 +19,7 @@ demo: setup
 	@cmake --build --preset release --target catoptra examples
 	@scripts/demo.sh
 
-test: build
+test:
+	@scripts/setup.sh --tests
+	@$(MAKE) --no-print-directory build
 	@scripts/test.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that Catoptra is built with, as root or through sudo. Does nothing where all are there.
+# Installs the Debian 12 packages that Catoptra is built with (--tests: and tested with), as root or through sudo. Does nothing where
+# all are there.
 set -euo pipefail
 
 packages=(
@@ -10,6 +11,11 @@ packages=(
   nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libfreetype-dev fonts-dejavu-core
   libgtest-dev
 )
+
+# Browser tests of the HTML reports.
+if [ "${1:-}" = --tests ]; then packages+=(chromium); fi
+# Some machines have npm from elsewhere than Debian.
+command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -47,7 +47,8 @@ function lensMaps(points, byGaze) {
   const plots = make("div", {class: "plots"});
   for (const map of kLensMaps) {
     const values = grid.cells.map((row) => row.map((p) => (p ? map.value(p) : NaN)));
-    if (!values.flat().some(isNumber)) continue;
+    // What is nowhere (distortion by a focimeter, colour without dispersion) needs no map.
+    if (!values.flat().some((v) => isNumber(v) && Math.abs(v) > 1e-9)) continue;
     const clean = values.map((row) => row.map((v) => (isNumber(v) ? v : null)));
     const text = grid.cells.map((row) => row.map((p) => (p ? lensHover(p, map) : "")));
     plots.append(contourMap(map.title, map.unit, grid, clean, text, axes, map.scale));
