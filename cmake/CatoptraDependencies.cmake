@@ -19,6 +19,16 @@ find_package(CLI11 REQUIRED)                                       # app        
 find_package(tomlplusplus REQUIRED)                                # app             libtomlplusplus-dev
 find_package(spdlog REQUIRED)                                      # app             libspdlog-dev
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)               # app             libssl-dev
+# app: Debian's interpreter, whose modules (NumPy, Dask) the package uses, whatever else the PATH has first. Another one:
+# -DPython3_EXECUTABLE=...
+if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter Development.Module)  # app         python3-dev
+set(PYBIND11_FINDPYTHON ON)
+set(PYBIND11_PYTHON_VERSION ${Python3_VERSION})
+set(Python_EXECUTABLE ${Python3_EXECUTABLE})
+find_package(pybind11 2.10 REQUIRED)                               # app             pybind11-dev
 find_package(Freetype REQUIRED)                                    # examples        libfreetype-dev
 if(CATOPTRA_BUILD_TESTS)
   find_package(GTest REQUIRED)                                     # tests           libgtest-dev

@@ -9,11 +9,12 @@ packages=(
   libassimp-dev libopenmesh-dev libembree-dev libtbb-dev libyaml-cpp-dev libopenimageio-dev openimageio-tools
   libepoxy-dev libegl-dev libgl1-mesa-dri libegl1
   nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libfreetype-dev fonts-dejavu-core
+  python3-dev pybind11-dev python3-numpy
   libgtest-dev
 )
 
-# Browser tests of the HTML reports.
-if [ "${1:-}" = --tests ]; then packages+=(chromium); fi
+# A browser for the HTML reports; a cluster scheduler and the tools of the Python tests.
+if [ "${1:-}" = --tests ]; then packages+=(chromium python3-pytest python3-distributed mypy); fi
 # Some machines have npm from elsewhere than Debian.
 command -v npm >/dev/null || packages+=(npm)
 
