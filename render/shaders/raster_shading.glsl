@@ -1,6 +1,6 @@
 // The one shading model of all modes (docs/decisions/0001); needs raster_view.glsl. Variants: LIGHTS, of which the first
 // DIRECTIONAL_LIGHTS have the directional kind. They are constants because a loop over a number known only at run time cost
-// a quarter of a frame on llvmpipe. Programs
+// a tenth of a frame on llvmpipe. SKY_TEXTURE: instead of one colour. Programs
 // that only show the sky do without them.
 
 #ifndef LIGHTS
@@ -29,8 +29,11 @@ vec3 shade(vec3 albedo, vec3 emissive, vec3 normal, vec3 position) {
 
 /// Radiance of the sky in a world direction of any length. Equirectangular: the top row is +z, the centre +y.
 vec3 sky(vec3 direction) {
-  if (sky_color.w == 0.0) return sky_color.rgb;
+#ifdef SKY_TEXTURE
   vec3 d = normalize(direction);
   vec2 st = vec2(0.5 + atan(d.x, d.y) / (2.0 * kPi), acos(clamp(d.z, -1.0, 1.0)) / kPi);
   return textureLod(sky_texture, st, 0.0).rgb;
+#else
+  return sky_color.rgb;
+#endif
 }

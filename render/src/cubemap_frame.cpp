@@ -179,7 +179,7 @@ void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, con
 const GlProgram& CubemapFrame::optic_program(bool geometry) {
   const auto found = optic_programs_.find(geometry);
   if (found != optic_programs_.end()) return found->second;
-  std::vector<std::string> defines = raster_.light_defines();
+  std::vector<std::string> defines = raster_.shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return optic_programs_
       .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},

@@ -172,7 +172,7 @@ FrameStats PvrrFrame::statistics() const {
 const GlProgram& PvrrFrame::mirror_program(bool geometry) {
   const auto found = mirror_programs_.find(geometry);
   if (found != mirror_programs_.end()) return found->second;
-  std::vector<std::string> defines = raster_.light_defines();
+  std::vector<std::string> defines = raster_.shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return mirror_programs_
       .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},

@@ -29,8 +29,13 @@ struct TriangleChunk {
 /// What a view sees of a box. Rounding counts in favour of being seen, and of being near.
 struct BoxInView {
   bool seen = false;      ///< not wholly beyond one side of the view
-  double nearest_mm = 0;  ///< least distance along the direction of view, of any of its points
+  double nearest_mm = 0;  ///< least distance along the direction of view, of any of its points that is seen
 };
 [[nodiscard]] BoxInView box_in_view(const RasterView& view, const cad_import::BoundingBox& box);
+
+/// The same distance for the triangles themselves, whose box may hold much that they are not; infinite where
+/// none is seen.
+[[nodiscard]] double nearest_triangle_mm(const RasterView& view, std::span<const glm::vec3> positions,
+                                         std::span<const std::uint32_t> indices);
 
 }  // namespace catoptra::render

@@ -17,6 +17,8 @@ constexpr GLuint kAlbedoUnit = 0, kOpticDepthUnit = 1, kSkyUnit = 7;
 
 // Triangles are drawn in pieces: small ones leave out and hide more, but each costs a draw.
 constexpr std::size_t kSmallestChunk = 64, kMostChunks = 256;
+// Chunks of so many triangles are looked at one by one where their box touches an optic's: some 30 us.
+constexpr std::size_t kFewTriangles = 128;
 
 struct GpuLight {
   glm::vec4 position, radiance;
@@ -72,8 +74,8 @@ RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : sc
 
 void RasterScene::upload_surroundings() {
   std::vector<Vertex> vertices;
-  std::vector<glm::vec3> positions;
-  std::vector<std::uint32_t> indices;
+  std::vector<glm::vec3>& positions = positions_;
+  std::vector<std::uint32_t>& indices = triangles_;
   std::size_t triangles = 0;
   for (const cad_import::TriangleMesh& mesh : scene_.surroundings) triangles += mesh.triangles.size();
   const std::size_t largest = std::max(kSmallestChunk, triangles / kMostChunks);
@@ -168,7 +170,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   gpu.sky_center = glm::vec4(glm::vec3(directions.center), 0);
   gpu.sky_x = glm::vec4(glm::vec3(directions.dx), 0);
   gpu.sky_y = glm::vec4(glm::vec3(directions.dy), 0);
-  gpu.sky_color = glm::vec4(scene_.environment.color, sky_ ? 1 : 0);
+  gpu.sky_color = glm::vec4(scene_.environment.color, 0);
   gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, 0, 0);
   for (std::size_t i = 0; i < lights_.size(); ++i) gpu.lights[i] = gpu_light(lights_[i], view.origin_mm);
   update_buffer(view_uniforms_, std::as_bytes(std::span(&gpu, 1)));
@@ -201,11 +203,14 @@ void RasterScene::set_mesh_origin(const RasterView& view, const glm::dvec3& mesh
   glUniformMatrix3fv(kMeshAxes, 1, GL_FALSE, &axes[0].x);
 }
 
-std::vector<std::string> RasterScene::light_defines() const {
+std::vector<std::string> RasterScene::shading_defines() const {
   const auto directional = std::count_if(lights_.begin(), lights_.end(), [](const Light& light) {
     return light.kind == LightKind::directional;
   });
-  return {"LIGHTS " + std::to_string(lights_.size()), "DIRECTIONAL_LIGHTS " + std::to_string(directional)};
+  std::vector<std::string> defines{"LIGHTS " + std::to_string(lights_.size()),
+                                   "DIRECTIONAL_LIGHTS " + std::to_string(directional)};
+  if (sky_) defines.emplace_back("SKY_TEXTURE");
+  return defines;
 }
 
 void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
@@ -233,8 +238,16 @@ std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, con
   std::vector<Draw> draws;
   for (std::size_t i = 0; i < chunks_.size(); ++i) {
     const BoxInView box = box_in_view(view, chunks_[i].triangles.box);
-    if (box.seen)
-      draws.push_back({i, box.nearest_mm, pass.clip_depth && box.nearest_mm <= pass.clip_reach_mm});
+    if (!box.seen) continue;
+    Draw draw{i, box.nearest_mm, pass.clip_depth && box.nearest_mm <= pass.clip_reach_mm};
+    const TriangleChunk& chunk = chunks_[i].triangles;
+    // Few triangles in a large box, as of walls along a street, are seldom near where their box is.
+    if (draw.clip && chunk.count <= 3 * kFewTriangles) {
+      draw.nearest_mm =
+          nearest_triangle_mm(view, positions_, std::span(triangles_).subspan(chunk.first, chunk.count));
+      draw.clip = draw.nearest_mm <= pass.clip_reach_mm;
+    }
+    draws.push_back(draw);
   }
   // From front to back, so that what is hidden is not shaded; alpha-tested surfaces last, since they cost
   // more and hide less. Where chunks are equally near their order in the file decides.
@@ -314,7 +327,7 @@ const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bo
       unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
-  std::vector<std::string> defines = light_defines();
+  std::vector<std::string> defines = shading_defines();
   if (textured) defines.emplace_back("TEXTURED");
   if (alpha_test) defines.emplace_back("ALPHA_TEST");
   if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
@@ -329,7 +342,8 @@ const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bo
 const GlProgram& RasterScene::sky_program(bool geometry) {
   const auto found = sky_programs_.find(geometry);
   if (found != sky_programs_.end()) return found->second;
-  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  std::vector<std::string> defines = shading_defines();
+  if (geometry) defines.emplace_back("GEOMETRY");
   return sky_programs_
       .emplace(geometry,
                make_program({"raster_view.glsl", "raster_sky.vert.glsl"},

@@ -77,7 +77,7 @@ class RasterScene {
   static void set_mesh_origin(const RasterView& view, const RasterOptic& optic);
 
   /// For programs that shade, see raster_shading.glsl.
-  [[nodiscard]] std::vector<std::string> light_defines() const;
+  [[nodiscard]] std::vector<std::string> shading_defines() const;
 
  private:
   struct Batch {
@@ -118,6 +118,8 @@ class RasterScene {
   std::vector<Light> lights_;  ///< the directional ones first
   std::vector<Batch> batches_;
   std::vector<Chunk> chunks_;
+  std::vector<glm::vec3> positions_;      ///< of the surroundings, once more on the CPU ...
+  std::vector<std::uint32_t> triangles_;  ///< ... with the common index buffer, to find what is near
   std::vector<RasterOptic> optics_;
   std::vector<std::optional<RasterOptic>> backs_;  ///< of the lenses
   std::map<unsigned, GlProgram> surface_programs_;
