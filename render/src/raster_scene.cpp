@@ -17,7 +17,7 @@ constexpr GLuint kAlbedoUnit = 0, kOpticDepthUnit = 1, kSkyUnit = 7;
 
 // Triangles are drawn in pieces: small ones leave out and hide more, but each costs a draw.
 constexpr std::size_t kSmallestChunk = 64, kMostChunks = 256;
-// Chunks of so many triangles are looked at one by one where their box touches an optic's: some 30 us.
+// Chunks of so many triangles are looked at one by one where their box reaches an optic.
 constexpr std::size_t kFewTriangles = 128;
 
 struct GpuLight {
