@@ -17,9 +17,9 @@ struct Frame {
 
   // Geometry of the pixel's centre (sample 0), filled only where asked for, and only where an optic shows
   // (optic_id >= 0), except `position`, which is there for every pixel.
-  std::vector<glm::vec4> position;   ///< xyz, w = 1: world point shown, mm; w = 0: a direction (the sky)
-  std::vector<glm::vec3> surface;    ///< last point on the optic, mm
-  std::vector<glm::vec3> direction;  ///< unit outgoing direction of the exact ray where the mode knows it
+  std::vector<glm::vec4> position;     ///< xyz, w = 1: world point shown, mm; w = 0: a direction (the sky)
+  std::vector<glm::vec3> surface;      ///< last point on the optic, mm
+  std::vector<glm::vec3> direction;    ///< unit outgoing direction of the exact ray where the mode knows it
   std::vector<std::int32_t> optic_id;  ///< index in Scene::optics; -1: no optic
 };
 
@@ -33,11 +33,14 @@ struct OpticStats {
   std::string name;
   std::string kind;  ///< "mirror" or "lens"
   std::size_t vertices = 0;
-  std::size_t rays = 0;  ///< traced for this optic in this frame
+  std::size_t rays = 0;  ///< reflected or refracted for this optic in this frame
+  std::size_t scene_rays =
+      0;  ///< mode pvrr: sent into the scene from there, which kept rays are too where the optic moves
   std::vector<PatchStats> patches;
 };
 
-/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "readback", "raster", "map" as they apply.
+/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "readback", "raster", "map" as
+/// they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;
   std::map<std::string, double> time_ms;
@@ -53,14 +56,15 @@ struct RenderResult {
 /// Options of one frame.
 struct FrameOptions {
   int width = 1280, height = 720;
-  int samples = 1;           ///< per pixel; sample 0 is the pixel's centre
-  bool geometry = false;     ///< fill Frame::position, surface, direction, optic_id
-  std::size_t threads = 0;   ///< CPU threads; 0: all
-  bool read_back = true;     ///< false: leave the picture on the GPU (bench)
+  int samples = 1;                ///< per pixel; sample 0 is the pixel's centre
+  bool geometry = false;          ///< fill Frame::position, surface, direction, optic_id
+  std::size_t threads = 0;        ///< CPU threads; 0: all
+  bool read_back = true;          ///< false: leave the picture on the GPU (bench)
   bool overlay_vertices = false;  ///< red balls at the exact hits, and the optic's mesh in white
   bool overlay_rays = false;      ///< the vertex rays as lines
   /// Keep from the last frame what cannot have changed: vertex rays, viewpoints and maps while eye and optic
-  /// stay (PVRR paper, 5). Changes no picture, only its cost; false: everything anew in every frame.
+  /// stay, the rays alone while they move together (PVRR paper, 5). Changes no picture by more than
+  /// rounding, only its cost; false: everything anew in every frame.
   bool reuse_static = true;
 };
 

@@ -1,6 +1,7 @@
 // One picture of a scene by one of the modes.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -16,11 +17,12 @@ enum class Mode { pvrr, hybrid, raytrace, cubemap };
 [[nodiscard]] std::string_view mode_name(Mode mode);
 [[nodiscard]] std::optional<Mode> mode_from_name(std::string_view name);
 
-/// Everything the modes share for one scene, built once and used for many frames: decoded textures, the ray scene, and,
-/// on first use, the GL context with the uploaded surroundings.
+/// Everything the modes share for one scene, built once and used for many frames: decoded textures, the ray
+/// scene, and, on first use, the GL context with the uploaded surroundings.
 class Renderer {
  public:
-  /// Copies nothing of `scene`, which must outlive the renderer. Throws catoptra::Error (missing or broken texture).
+  /// Copies nothing of `scene` (but see place_optic), which must outlive the renderer. Throws catoptra::Error
+  /// (missing or broken texture).
   explicit Renderer(const Scene& scene);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -32,8 +34,16 @@ class Renderer {
   /// Time in ms of the bare packet queries of a raytrace frame: the yardstick of the reference's speed.
   [[nodiscard]] double bare_packet_ms(const Camera& camera, const FrameOptions& options) const;
 
-  /// Tells the renderer that the mesh of optic `index` in the scene has changed or moved.
+  /// Tells the renderer that optic `index` in the scene has changed.
   void optic_changed(std::size_t index);
+
+  /// Moves optic `index` rigidly: `placement` takes it from where the scene has it (not from where it was put
+  /// last) to where it is from now on; nothing of it is built anew, and the scene stays as it is. Where the
+  /// camera comes along, as with spectacles on a nose, mode pvrr keeps the rays of its vertices
+  /// (FrameOptions::reuse_static); modes hybrid and raytrace set up the exact surface again, and keep a copy
+  /// of the scene from the first such picture on. Throws catoptra::Error where `placement` scales, shears or
+  /// mirrors.
+  void place_optic(std::size_t index, const glm::dmat4& placement);
 
  private:
   struct Impl;

@@ -1,6 +1,8 @@
 // catoptra bench SCENE
 #include <algorithm>
 #include <cstdio>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 
@@ -24,10 +26,12 @@ struct BenchOptions {
 };
 
 struct ModeTiming {
-  std::string name;  ///< of the mode; "pvrr_static": with eye and optics at rest
+  std::string name;  ///< of the mode, or kRiding, kStatic
   FrameTiming timing;
 };
 
+// Mode pvrr besides with everything anew: eye and optics moving together through the scene, and all at rest.
+constexpr const char* kRiding = "pvrr_riding";
 constexpr const char* kStatic = "pvrr_static";
 
 using nlohmann::ordered_json;
@@ -78,7 +82,7 @@ std::size_t triangle_count(const render::Scene& scene) {
 
 /// The ratios that do not follow from the frame times alone.
 void add_ratios(Session& session, const std::vector<ModeTiming>& timings, ordered_json& report) {
-  for (const std::string name : {"pvrr", kStatic})
+  for (const std::string name : {"pvrr", kRiding, kStatic})
     if (const FrameTiming* pvrr = timing_of(timings, name))
       if (const auto ratio = frame_over_raster_passes(*pvrr)) report[name + "_over_raster_passes"] = *ratio;
   std::vector<double> bare;
@@ -123,35 +127,67 @@ void print_table(const ordered_json& report) {
     std::printf("\n");
   }
   print_ratio(report, "pvrr_over_raster_passes", "pvrr frame / its own two raster passes");
+  print_ratio(report, "pvrr_riding_over_raster_passes", "... with eye and optics moving together");
   print_ratio(report, "pvrr_static_over_raster_passes", "... with eye and optics at rest");
   print_ratio(report, "pvrr_colors_over_one_color", "pvrr frame with the lenses' wavelengths / with one");
+  print_ratio(report, "pvrr_riding_colors_over_one_color", "... with eye and optics moving together");
   print_ratio(report, "pvrr_static_colors_over_one_color", "... with eye and optics at rest");
   print_ratio(report, "raytrace_over_bare_packets", "raytrace frame / bare ray packets for the same rays");
   print_ratio(report, "optic_commit_over_full_build", "moving an optic / building the ray scene");
   print_ratio(report, "tessellate_over_brepmesh", "times faster than the CAD kernel's mesher");
 }
 
-/// Every mode with everything anew in each frame, as where the eye moves; pvrr also at rest (paper, section
-/// 5).
+/// A head that turns and steps to and fro about the scene's camera, by as little as leaves the picture what
+/// it is, and takes all optics along.
+MoveScene ride(const render::Scene& scene) {
+  return [&scene](int frame, render::Renderer& renderer, render::Camera& camera) {
+    constexpr double kTurn_rad = 1e-3, kStep_mm = 0.2;
+    const double phase = frame % 2 ? 1 + 0.001 * frame : -1 - 0.001 * frame;  // no place twice
+    const glm::dvec3 eye = scene.camera.eye_mm;
+    const glm::dmat4 turned = glm::rotate(glm::dmat4(1), phase * kTurn_rad, glm::normalize(scene.camera.up));
+    const glm::dmat4 motion = glm::translate(glm::dmat4(1), eye + glm::dvec3(phase * kStep_mm)) * turned *
+                              glm::translate(glm::dmat4(1), -eye);
+    camera.eye_mm = glm::dvec3(motion * glm::dvec4(eye, 1));
+    camera.target_mm = glm::dvec3(motion * glm::dvec4(scene.camera.target_mm, 1));
+    camera.up = glm::dvec3(motion * glm::dvec4(scene.camera.up, 0));
+    for (std::size_t i = 0; i < scene.optics.size(); ++i) renderer.place_optic(i, motion);
+  };
+}
+
+/// One of the three states of mode pvrr. What moved goes back to its place afterwards.
+FrameTiming time_pvrr(render::Renderer& renderer, const std::string& state, const render::Scene& scene,
+                      render::FrameOptions frame, int frames, Progress& progress) {
+  frame.reuse_static = state != "pvrr";
+  const FrameTiming timing = time_frames(renderer, render::Mode::pvrr, scene.camera, frame, frames, progress,
+                                         state == kRiding ? ride(scene) : MoveScene());
+  for (std::size_t i = 0; i < scene.optics.size(); ++i) renderer.place_optic(i, glm::dmat4(1));
+  return timing;
+}
+
+/// Every mode with everything anew in each frame, as where the eye moves; pvrr in its three states (paper,
+/// section 5).
 std::vector<ModeTiming> time_modes(Session& session, const BenchOptions& options,
                                    const std::vector<render::Mode>& modes) {
   render::FrameOptions frame = session.frame;
   frame.read_back = false;
   std::vector<ModeTiming> timings;
-  const auto time = [&](std::string name, render::Mode mode, bool at_rest) {
-    frame.reuse_static = at_rest;
-    timings.push_back({std::move(name), time_frames(session.renderer(), mode, session.scene().camera, frame,
-                                                    options.frames, session.progress)});
-  };
+  frame.reuse_static = false;
   for (const render::Mode mode : modes) {
-    time(std::string(render::mode_name(mode)), mode, false);
-    if (mode == render::Mode::pvrr) time(kStatic, mode, true);
+    if (mode == render::Mode::pvrr) {
+      for (const std::string state : {"pvrr", kRiding, kStatic})
+        timings.push_back({state, time_pvrr(session.renderer(), state, session.scene(), frame, options.frames,
+                                            session.progress)});
+      continue;
+    }
+    timings.push_back(
+        {std::string(render::mode_name(mode)), time_frames(session.renderer(), mode, session.scene().camera,
+                                                           frame, options.frames, session.progress)});
   }
   return timings;
 }
 
-/// What dispersion costs: pvrr frames as they are over frames with one wavelength a lens, with everything
-/// anew and at rest. Nothing is added where no lens has more than one.
+/// What dispersion costs: pvrr frames as they are over frames with one wavelength a lens, in the three
+/// states. Nothing is added where no lens has more than one.
 void add_color_ratios(Session& session, const BenchOptions& options, const std::vector<ModeTiming>& timings,
                       ordered_json& report) {
   render::Scene scene = session.scene();
@@ -164,10 +200,8 @@ void add_color_ratios(Session& session, const BenchOptions& options, const std::
   render::FrameOptions frame = session.frame;
   frame.read_back = false;
   render::Renderer renderer(scene);
-  for (const std::string name : {"pvrr", kStatic}) {
-    frame.reuse_static = name == kStatic;
-    const FrameTiming one =
-        time_frames(renderer, render::Mode::pvrr, scene.camera, frame, options.frames, session.progress);
+  for (const std::string name : {"pvrr", kRiding, kStatic}) {
+    const FrameTiming one = time_pvrr(renderer, name, scene, frame, options.frames, session.progress);
     report[name + "_colors_over_one_color"] = timing_of(timings, name)->median_ms() / one.median_ms();
   }
 }

@@ -16,14 +16,17 @@ double FrameTiming::median_ms() const {
   return median(frame_ms);
 }
 
-FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, const render::Camera& camera,
-                        const render::FrameOptions& options, int frames, Progress& progress) {
+FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::Camera camera,
+                        const render::FrameOptions& options, int frames, Progress& progress,
+                        const MoveScene& move) {
   using Clock = std::chrono::steady_clock;
+  if (move) move(0, renderer, camera);
   (void)renderer.render(mode, camera, options);
   FrameTiming timing;
   timing.frames = frames;
   for (int i = 0; i < frames; ++i) {
     progress.show(double(i) / frames, "timing " + std::string(render::mode_name(mode)));
+    if (move) move(i + 1, renderer, camera);
     const auto start = Clock::now();
     const render::RenderResult result = renderer.render(mode, camera, options);
     timing.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());

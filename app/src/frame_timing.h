@@ -1,6 +1,7 @@
 // How long frames take.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -24,9 +25,12 @@ struct FrameTiming {
 [[nodiscard]] double median(std::vector<double> values);
 
 /// Renders one frame to warm up (shader compilation, first touch of memory), then `frames` that count.
-[[nodiscard]] FrameTiming time_frames(render::Renderer& renderer, render::Mode mode,
-                                      const render::Camera& camera, const render::FrameOptions& options,
-                                      int frames, Progress& progress);
+/// `move`, if any, is called before each of them, with a number that counts up, and may change camera and
+/// optics; its time does not count.
+using MoveScene = std::function<void(int frame, render::Renderer& renderer, render::Camera& camera)>;
+[[nodiscard]] FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::Camera camera,
+                                      const render::FrameOptions& options, int frames, Progress& progress,
+                                      const MoveScene& move = {});
 
 /// Medians: {"trace": ..., "pass1": ..., ...}
 [[nodiscard]] nlohmann::ordered_json pass_json(const FrameTiming& timing);

@@ -5,9 +5,10 @@ layout(location = 3) in vec4 in_ball;      // centre and radius of an instanced 
 
 layout(location = 0) uniform vec3 origin_high;
 layout(location = 1) uniform vec3 origin_low;
+layout(location = 16) uniform mat3 mesh_axes;  // as in raster_surface.vert.glsl
 layout(location = 5) uniform float lift;  // share of its distance by which the line is moved towards the viewer
 
 void main() {
   precise vec3 relative = ((in_ball.xyz - origin_high) - origin_low) + in_ball.w * in_position;
-  gl_Position = clip_from_relative * vec4(relative * (1.0 - lift), 1.0);
+  gl_Position = clip_from_relative * vec4(mesh_axes * relative * (1.0 - lift), 1.0);
 }

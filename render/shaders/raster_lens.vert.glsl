@@ -8,6 +8,7 @@ layout(location = 4) in vec4 in_shown[SAMPLES];  // xyz: see the fragment shader
 
 layout(location = 0) uniform vec3 origin_high;
 layout(location = 1) uniform vec3 origin_low;
+layout(location = 16) uniform mat3 mesh_axes;  // as in raster_surface.vert.glsl
 
 // Further wavelengths are added where depth is equal, drawn by another program.
 invariant gl_Position;
@@ -17,9 +18,10 @@ out vec2 v_mask;
 out vec4 v_shown[SAMPLES];
 
 void main() {
-  precise vec3 relative = (in_position - origin_high) - origin_low;
+  precise vec3 from_origin = (in_position - origin_high) - origin_low;
+  vec3 relative = mesh_axes * from_origin;
   v_relative = relative;
-  v_exit = vec4((in_exit.xyz - origin_high) - origin_low, in_exit.w);
+  v_exit = vec4(mesh_axes * ((in_exit.xyz - origin_high) - origin_low), in_exit.w);
   v_mask = in_mask;
   v_shown = in_shown;
   gl_Position = clip_from_relative * vec4(relative, 1.0);

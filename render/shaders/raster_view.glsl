@@ -14,7 +14,7 @@ layout(std140, binding = 0) uniform View {
   vec4 sky_center;  // world direction seen at the middle of the view ...
   vec4 sky_x;       // ... and its change by one unit of normalised device x ...
   vec4 sky_y;       // ... and y
-  vec4 sky_color;   // rgb, w = 1: a sky texture is bound instead
-  vec4 parameters;  // level-of-detail bias, ambient irradiance, number of lights, unused
+  vec4 sky_color;   // rgb
+  vec4 parameters;  // level-of-detail bias, ambient irradiance, unused, unused
   Light lights[kMaxLights];
 };

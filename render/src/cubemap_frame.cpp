@@ -80,6 +80,7 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
                                    optic.kind == optics::OpticKind::mirror ? "mirror" : "lens",
                                    optic.mesh.vertices.size(),
                                    0,
+                                   0,
                                    {}});
   return result;
 }
@@ -127,14 +128,16 @@ void CubemapFrame::set_cube_geometry(const Cube& cube, const glm::dvec3& center_
 
 void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool reuse) {
   Lens& lens = lenses_[optic];
-  if (reuse && lens.eye_mm == eye_mm) return;
+  const optics::Placement& placement = raster_.optic(optic).placement();
+  if (reuse && lens.eye_mm == eye_mm && lens.placement == placement) return;
   if (!lens.tracer) lens.tracer = std::make_unique<optics::LensTracer>(scene_.optics[optic]);
   lens.eye_mm = eye_mm;
-  const LensRays rays = refract_eye_rays(scene_.optics[optic], *lens.tracer, eye_mm);
+  lens.placement = placement;
+  const LensRays rays = refract_eye_rays(scene_.optics[optic], *lens.tracer, placement.own_point(eye_mm));
   std::vector<std::vector<glm::dvec3>> directions;
   for (const auto& of_sample : rays.hits) {
     auto& some = directions.emplace_back();
-    for (const optics::VertexHit& hit : of_sample) some.push_back(hit.direction);
+    for (const optics::VertexHit& hit : of_sample) some.push_back(placement.direction(hit.direction));
   }
   lens.raster.set_shown(raster_.side(optic, rays.entered),
                         raster_.exit_mask(optic, optics::other_side(rays.entered)), rays, directions);
@@ -142,9 +145,10 @@ void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool 
 
 glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {
   const glm::dvec3& front = raster_.optic(optic).center_mm();
+  const optics::Placement& placement = raster_.optic(optic).placement();
   if (scene_.optics[optic].kind == optics::OpticKind::mirror)
-    return before_mirror(scene_.optics[optic], front);
-  return 0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm());
+    return placement.point(before_mirror(scene_.optics[optic], front));
+  return placement.point(0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm()));
 }
 
 void CubemapFrame::draw_lens(std::size_t optic, const RasterTarget& target, const RasterView& camera,
@@ -165,7 +169,7 @@ void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, con
   }
   const Cube& cube = cubes_[optic];
   glUseProgram(optic_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, raster_.optic(optic).center_mm());
+  RasterScene::set_mesh_origin(camera, raster_.optic(optic));
   set_optic_uniforms(scene_.optics[optic], optic);
   glBindTextureUnit(kMapColorUnit, cube.color.id());
   if (geometry) set_cube_geometry(cube, center_mm(optic));
@@ -175,7 +179,8 @@ void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, con
 const GlProgram& CubemapFrame::optic_program(bool geometry) {
   const auto found = optic_programs_.find(geometry);
   if (found != optic_programs_.end()) return found->second;
-  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  std::vector<std::string> defines = raster_.shading_defines();
+  if (geometry) defines.emplace_back("GEOMETRY");
   return optic_programs_
       .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
                                       {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",

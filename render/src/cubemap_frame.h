@@ -35,9 +35,10 @@ class CubemapFrame {
     bool geometry = false;
     GlTexture color, position, detail, depth;
   };
-  /// What the vertices of a lens show; `eye_mm`: from where.
+  /// What the vertices of a lens show; `eye_mm`, `placement`: from where, and where it was.
   struct Lens {
     std::optional<glm::dvec3> eye_mm;
+    optics::Placement placement;
     std::unique_ptr<optics::LensTracer> tracer;
     RasterLens raster;
   };

@@ -27,14 +27,14 @@ std::vector<std::uint32_t> with_neighbours(const std::vector<std::uint8_t>& mask
 
 }  // namespace
 
-HybridFrame::HybridFrame(const Scene& scene, RasterScene& raster, const RayTracer& tracer)
+HybridFrame::HybridFrame(const Scene& scene, RasterScene& raster)
     : scene_(scene),
       raster_(raster),
-      tracer_(tracer),
       mask_program_(
           make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_mask.frag.glsl"})) {}
 
-RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
+RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
+                                 const RayTracer& tracer) {
   RenderResult result;
   double raster_ms = 0, readback_ms = 0, trace_ms = 0;
   const glm::ivec2 size(options.width, options.height);
@@ -58,7 +58,7 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
       pixels = masked_pixels();
     });
     trace_ms =
-        gl_time_ms([&] { result.stats.rays = tracer_.trace_pixels(camera, options, pixels, result.frame); });
+        gl_time_ms([&] { result.stats.rays = tracer.trace_pixels(camera, options, pixels, result.frame); });
   });
   result.stats.time_ms = {
       {"raster", raster_ms}, {"readback", readback_ms}, {"trace", trace_ms}, {"total", total_ms}};
@@ -69,6 +69,7 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
          optic.mesh.vertices.size(),
          // Rays are traced by pixel and may meet several optics; a single one gets them all.
          scene_.optics.size() == 1 ? result.stats.rays : 0,
+         0,
          {}});
   return result;
 }
@@ -89,10 +90,12 @@ void HybridFrame::draw_mask(const RasterView& view) {
   glUseProgram(mask_program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
-    const RasterOptic& seen = optic.kind == optics::OpticKind::mirror
-                                  ? raster_.optic(i)
-                                  : raster_.side(i, optics::side_towards(optic, view.origin_mm));
-    RasterScene::set_mesh_origin(view, seen.center_mm());
+    const RasterOptic& seen =
+        optic.kind == optics::OpticKind::mirror
+            ? raster_.optic(i)
+            : raster_.side(
+                  i, optics::side_towards(optic, raster_.optic(i).placement().own_point(view.origin_mm)));
+    RasterScene::set_mesh_origin(view, seen);
     seen.draw_surface();
   }
 }

@@ -15,12 +15,12 @@ namespace catoptra::render {
 /// Keeps the mask of the optics' pixels from frame to frame; needs the same current context throughout.
 class HybridFrame {
  public:
-  HybridFrame(const Scene& scene, RasterScene& raster, const RayTracer& tracer);
+  HybridFrame(const Scene& scene, RasterScene& raster);
 
-  /// The picture is put together on the CPU and so always read back. Times: "raster", "readback", "trace",
-  /// "total".
-  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
-                                    RasterPicture& picture);
+  /// The picture is put together on the CPU and so always read back. `tracer` has the optics where `raster`
+  /// has them. Times: "raster", "readback", "trace", "total".
+  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
+                                    const RayTracer& tracer);
 
  private:
   void begin_mask(const RasterTarget& target);
@@ -30,7 +30,6 @@ class HybridFrame {
 
   const Scene& scene_;
   RasterScene& raster_;
-  const RayTracer& tracer_;
   GlTexture mask_;
   GlFramebuffer mask_framebuffer_;
   glm::ivec2 mask_size_{0};

@@ -92,7 +92,7 @@ void Overlay::draw_in_scene(const RasterView& view, const GlTexture* clip_depth)
 
 void Overlay::draw_mesh(const RasterView& view, const RasterOptic& optic) {
   glUseProgram(program(false).id());
-  RasterScene::set_mesh_origin(view, optic.center_mm());
+  RasterScene::set_mesh_origin(view, optic);
   glUniform3f(kColor, 1, 1, 1);
   // A thousandth of the distance lifts the lines off the facets that they lie on.
   glUniform1f(kLift, 1e-3f);

@@ -35,9 +35,22 @@ PvrrFrame::PvrrFrame(const Scene& scene, RasterScene& raster, const optics::RayS
       make_dynamic_buffer(sizeof(std::uint32_t) * std::max<std::size_t>(1, scene.optics.size()));
 }
 
-void PvrrFrame::optic_changed(std::size_t index) {
+void PvrrFrame::optic_changed(std::size_t index, const cad_import::BoundingBox& bounds) {
   patches_[index].optic_changed();
-  for (PvrrPatch& patch : patches_) patch.map_changed();
+  bounds_changed(bounds);
+}
+
+void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placement,
+                            const cad_import::BoundingBox& bounds) {
+  patches_[index].place(placement);
+  bounds_changed(bounds);
+}
+
+void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
+  for (PvrrPatch& patch : patches_) {
+    patch.set_bounds(bounds);
+    patch.map_changed();
+  }
 }
 
 RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
@@ -97,13 +110,14 @@ void PvrrFrame::set_overlay(const FrameOptions& options) {
     if (!patch.faces_eye()) continue;
     for (const optics::VertexHit& hit : patch.hits()) {
       if (!passes(hit)) continue;
+      const optics::Placement& at = patch.placement();
       if (options.overlay_vertices && hit.scene_hit)
-        balls.push_back({hit.hit_point_mm,
+        balls.push_back({at.point(hit.hit_point_mm),
                          length_in_map(patch.view(), patch.map().size(), hit.hit_point_mm, kBallRadiusPx)});
       if (options.overlay_rays)
-        lines.push_back(
-            {hit.surface_point_mm,
-             hit.scene_hit ? hit.hit_point_mm : hit.surface_point_mm + kMissedRayLength * hit.direction});
+        lines.push_back({at.point(hit.surface_point_mm),
+                         at.point(hit.scene_hit ? hit.hit_point_mm
+                                                : hit.surface_point_mm + kMissedRayLength * hit.direction)});
     }
   }
   overlay_.set_balls(balls);
@@ -115,8 +129,10 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   RasterPass pass;
   pass.geometry = geometry;
   target.bind(geometry);
-  raster_.draw(camera, pass);
+  raster_.clear(camera, pass);
+  // First the optics, which hide much and cost little.
   for (std::size_t i = 0; i < patches_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
+  raster_.draw_all(camera, pass);
   if (!options.overlay_vertices && !options.overlay_rays) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   target.bind(false);
@@ -138,7 +154,7 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
     return;
   }
   glUseProgram(mirror_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, raster_.optic(index).center_mm());
+  RasterScene::set_mesh_origin(camera, raster_.optic(index));
   set_optic_uniforms(optic, index);
   patch.set_map(offset_px, geometry);
   raster_.optic(index).draw_surface();
@@ -148,7 +164,7 @@ FrameStats PvrrFrame::statistics() const {
   FrameStats stats;
   for (const PvrrPatch& patch : patches_) {
     stats.optics.push_back(patch.statistics());
-    stats.rays += stats.optics.back().rays;
+    stats.rays += stats.optics.back().scene_rays;
   }
   return stats;
 }
@@ -156,7 +172,8 @@ FrameStats PvrrFrame::statistics() const {
 const GlProgram& PvrrFrame::mirror_program(bool geometry) {
   const auto found = mirror_programs_.find(geometry);
   if (found != mirror_programs_.end()) return found->second;
-  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  std::vector<std::string> defines = raster_.shading_defines();
+  if (geometry) defines.emplace_back("GEOMETRY");
   return mirror_programs_
       .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
                                       {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",

@@ -21,8 +21,10 @@ class PvrrFrame {
   PvrrFrame(const Scene& scene, RasterScene& raster, const optics::RayScene& rays,
             const cad_import::BoundingBox& bounds);
 
-  /// The optic has changed or moved.
-  void optic_changed(std::size_t index);
+  /// The optic has changed, or is somewhere else now (which `raster` knows already); `bounds` as above.
+  void optic_changed(std::size_t index, const cad_import::BoundingBox& bounds);
+  void place_optic(std::size_t index, const optics::Placement& placement,
+                   const cad_import::BoundingBox& bounds);
 
   /// Times: "trace" (vertex rays, viewpoints, map coordinates), "pass1", "pass2", "readback", "total". A
   /// warning tells how many pixels of an optic its map does not reach; in a mirror they show the sky in the
@@ -31,6 +33,7 @@ class PvrrFrame {
                                     RasterPicture& picture);
 
  private:
+  void bounds_changed(const cad_import::BoundingBox& bounds);
   void set_overlay(const FrameOptions& options);
   void draw_picture(const RasterTarget& target, const RasterView& camera, glm::dvec2 offset_px, bool geometry,
                     const FrameOptions& options);

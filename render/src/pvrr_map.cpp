@@ -80,6 +80,9 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
   pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
   pass.clip_depth = clip_depth();
+  // A little farther than the surface is, so that rounding decides nothing.
+  const double farthest = clipped_ ? surface.farthest_mm(view_) : 0;
+  pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   pass.draw_optics = true;
   pass.except = optic;
   target_->bind(geometry);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "optics/map_coordinates.h"
 #include "render/src/pvrr_plane_view.h"
@@ -17,6 +18,11 @@ using optics::VertexHit;
 // Border of a lens map, as a share of its width: room for the wavelengths whose border is not sought, and for
 // corners.
 constexpr double kLensMargin = 0.02;
+
+// Share of its distance from the optic by which the eye may be off before rays are traced anew: what is left
+// of a common motion of eye and optic by rounding, in scenes up to 100 km. Rays then are off by 1e-8 rad, a
+// sixth of the step of the floats in which map coordinates are drawn.
+constexpr double kEyeRounding = 1e-8;
 
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
 constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
@@ -90,53 +96,94 @@ void PvrrPatch::optic_changed() {
   traced_from_.reset();
 }
 
+void PvrrPatch::set_bounds(const cad_import::BoundingBox& bounds) {
+  if (bounds.min == bounds_.min && bounds.max == bounds_.max) return;
+  bounds_ = bounds;
+  hits_hold_ = false;
+}
+
+void PvrrPatch::place(const optics::Placement& placement) {
+  if (placement == placement_) return;
+  placement_ = placement;
+  hits_hold_ = false;
+}
+
 void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
-  traced_rays_ = 0;
-  const bool stays = options.reuse_static && traced_from_ == camera.origin_mm;
-  if (!stays) trace(camera.origin_mm);
+  traced_rays_ = scene_rays_ = 0;
+  const RasterView view = in_own_frame(camera, placement_);
+  if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
   if (!faces_eye_) {
     map_.set_empty(options.geometry);
     drawn_.reset();
     return;
   }
-  if (!stays || !fitted_for_ || !same_view(*fitted_for_, camera)) fit(camera, !stays);
+  const bool stays = hits_hold_;
+  if (!stays) find_hits();
+  if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays);
   map_.resize(map_size_, options.geometry);
+}
+
+bool PvrrPatch::rays_hold(const glm::dvec3& eye_mm) const {
+  return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
+                             kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
 void PvrrPatch::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
-  if (optic_.kind == OpticKind::lens) {
-    trace_lens(eye_mm);
-    return;
-  }
-  mirror_hits_ = optics::trace_vertices(optic_, eye_mm, rays_);
-  traced_rays_ = static_cast<std::size_t>(std::count_if(mirror_hits_.begin(), mirror_hits_.end(),
+  hits_hold_ = false;
+  if (optic_.kind == OpticKind::mirror) {
+    mirror_rays_ = optics::reflect_vertices(optic_, eye_mm);
+    ray_count_ = static_cast<std::size_t>(std::count_if(mirror_rays_.begin(), mirror_rays_.end(),
                                                         [](const VertexHit& h) { return h.faces_eye; }));
-  faces_eye_ = traced_rays_ > 0;
-  if (faces_eye_) fitted_ = optics::make_virtual_view(optic_, mirror_hits_, bounds_);
+  } else {
+    if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
+    lens_paths_ = refract_eye_rays(optic_, *tracer_, eye_mm);
+    ray_count_ = lens_paths_.passed();
+  }
+  traced_rays_ = ray_count_;
+  faces_eye_ = ray_count_ > 0;
 }
 
-void PvrrPatch::trace_lens(const glm::dvec3& eye_mm) {
-  if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
-  lens_rays_ = refract_eye_rays(optic_, *tracer_, eye_mm);
-  tbb::parallel_for(std::size_t(0), lens_rays_.hits.size(), [&](std::size_t k) {
-    lens_rays_.hits[k] = optics::find_scene_hits(std::move(lens_rays_.hits[k]), rays_);
-  });
-  traced_rays_ = lens_rays_.passed();
-  faces_eye_ = traced_rays_ > 0;
-  if (!faces_eye_) return;
+void PvrrPatch::find_hits() {
+  hits_hold_ = true;
+  scene_rays_ = ray_count_;
+  const auto bounds = optics::in_own_frame(bounds_, placement_);
+  if (optic_.kind == OpticKind::mirror) {
+    mirror_hits_ = with_hits(mirror_rays_);
+    fitted_ = optics::make_virtual_view(optic_, mirror_hits_, bounds);
+    return;
+  }
+  lens_rays_ = lens_paths_;
+  tbb::parallel_for(std::size_t(0), lens_rays_.hits.size(),
+                    [&](std::size_t k) { lens_rays_.hits[k] = with_hits(std::move(lens_rays_.hits[k])); });
   fitted_ =
-      optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds_, kLensMargin);
+      optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds, kLensMargin);
   for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
 }
 
-void PvrrPatch::fit(const RasterView& camera, bool traced) {
+std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
+  if (placement_ == optics::Placement()) return optics::find_scene_hits(std::move(rays), rays_);
+  std::vector<VertexHit> in_world = rays;
+  for (VertexHit& ray : in_world) {
+    ray.surface_point_mm = placement_.point(ray.surface_point_mm);
+    ray.direction = placement_.direction(ray.direction);
+  }
+  in_world = optics::find_scene_hits(std::move(in_world), rays_);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].scene_hit = in_world[i].scene_hit;
+    rays[i].hit_point_mm = placement_.own_point(in_world[i].hit_point_mm);
+  }
+  return rays;
+}
+
+void PvrrPatch::fit(const RasterView& camera, bool hits_anew) {
   fitted_for_ = camera;
   const bool was_on_grid = on_pixel_grid_;
-  const auto plane = optic_.kind == OpticKind::mirror ? plane_view(optic_, camera, fitted_, bounds_)
-                                                      : std::optional<PlaneView>();
+  const auto plane = optic_.kind == OpticKind::mirror
+                         ? plane_view(optic_, camera, fitted_, optics::in_own_frame(bounds_, placement_))
+                         : std::optional<PlaneView>();
   on_pixel_grid_ = plane.has_value();
-  if (traced || plane || was_on_grid) {
+  if (hits_anew || plane || was_on_grid) {
     view_ = plane ? plane->view : fitted_;
     set_coordinates();
     drawn_.reset();
@@ -179,7 +226,7 @@ void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) 
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
-  map_.draw(raster_, index_, last, view_, offset, geometry);
+  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry);
   drawn_ = {offset, geometry};
   if (!overlay) return;
   map_.target().bind(false);
@@ -193,7 +240,7 @@ void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
   glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
   glBindTextureUnit(kMapColorUnit, target.color().id());
   if (!geometry) return;
-  set_map_rays(view_);
+  set_map_rays(placed(view_, placement_));
   glBindTextureUnit(kMapPositionUnit, target.position().id());
   glBindTextureUnit(kMapDetailUnit, target.detail().id());
 }
@@ -221,9 +268,11 @@ OpticStats PvrrPatch::statistics() const {
                    optic_.kind == OpticKind::mirror ? "mirror" : "lens",
                    seen_mesh().vertices.size(),
                    traced_rays_,
+                   scene_rays_,
                    {}};
   if (faces_eye_)
-    stats.patches.push_back({view_.viewpoint_mm, view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
+    stats.patches.push_back(
+        {placement_.point(view_.viewpoint_mm), view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
   return stats;
 }
 

@@ -1,4 +1,6 @@
 // One optic in mode pvrr: vertex rays, virtual viewpoint and map, kept while nothing changes them (paper 5).
+// All but the map is in the optic's own frame, so that rays stay as they are where eye and optic move
+// together.
 #pragma once
 
 #include <memory>
@@ -19,16 +21,21 @@ namespace catoptra::render {
 
 class PvrrPatch {
  public:
-  /// Keeps the references; `bounds`: of everything in the scene.
+  /// Keeps the references; `bounds`: of everything in the scene, in the world.
   PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
             const cad_import::BoundingBox& bounds);
 
-  /// The optic itself has changed or moved; or something else that its map shows.
+  /// The optic itself has changed; or something else that its map shows; or the bounds of everything.
   void optic_changed();
   void map_changed() { drawn_.reset(); }
+  void set_bounds(const cad_import::BoundingBox& bounds);
+  /// The optic is somewhere else. Its rays stay if the eye comes along.
+  void place(const optics::Placement& placement);
 
-  /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices,
-  /// viewpoint, map coordinates, and the size of the map. `camera`: without sample offset.
+  /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices where
+  /// the eye has another place as the optic sees it; their hits where either has another place in the world,
+  /// and with them viewpoint, map coordinates, and the size of the map. `camera`: in the world, without
+  /// sample offset.
   void update(const RasterView& camera, const FrameOptions& options);
 
   /// Pass 1, unless the map is there already. An `overlay` (or null) is drawn into it.
@@ -38,9 +45,11 @@ class PvrrPatch {
   void set_map(glm::dvec2 offset_px, bool geometry) const;
 
   [[nodiscard]] bool faces_eye() const { return faces_eye_; }
-  /// Of the mesh drawn; of a lens at the reference wavelength.
+  /// Of the mesh drawn, in the optic's frame; of a lens at the reference wavelength.
   [[nodiscard]] std::span<const optics::VertexHit> hits() const;
+  /// In the optic's frame.
   [[nodiscard]] const optics::VirtualView& view() const { return view_; }
+  [[nodiscard]] const optics::Placement& placement() const { return placement_; }
   [[nodiscard]] const PvrrMap& map() const { return map_; }
   /// The mesh that the eye sees: a mirror's, or that of the side at which a lens is entered.
   [[nodiscard]] const RasterOptic& seen_surface() const;
@@ -49,9 +58,11 @@ class PvrrPatch {
   [[nodiscard]] OpticStats statistics() const;
 
  private:
+  [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;
   void trace(const glm::dvec3& eye_mm);
-  void trace_lens(const glm::dvec3& eye_mm);
-  void fit(const RasterView& camera, bool traced);
+  void find_hits();
+  [[nodiscard]] std::vector<optics::VertexHit> with_hits(std::vector<optics::VertexHit> rays) const;
+  void fit(const RasterView& camera, bool hits_anew);
   void set_coordinates();
   void set_map_size(const PvrrMapSize& size);
   [[nodiscard]] const tessellate::OpticArrays& seen_mesh() const;
@@ -64,14 +75,21 @@ class PvrrPatch {
   const optics::RayScene& rays_;
   cad_import::BoundingBox bounds_;
 
-  std::optional<glm::dvec3> traced_from_;  ///< the eye that what follows belongs to
-  std::vector<optics::VertexHit> mirror_hits_;
+  optics::Placement placement_;
+
+  std::optional<glm::dvec3> traced_from_;  ///< the eye, in the optic's frame, that what follows belongs to
+  std::vector<optics::VertexHit> mirror_rays_;
   std::unique_ptr<optics::LensTracer> tracer_;
-  LensRays lens_rays_;
-  optics::VirtualView fitted_;
+  LensRays lens_paths_;
+  std::size_t ray_count_ = 0;
   bool faces_eye_ = false;
 
-  std::optional<RasterView> fitted_for_;  ///< the camera that what follows belongs to
+  bool hits_hold_ = false;  ///< what follows belongs to those rays at this placement
+  std::vector<optics::VertexHit> mirror_hits_;
+  LensRays lens_rays_;
+  optics::VirtualView fitted_;
+
+  std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
   optics::VirtualView view_;
   bool on_pixel_grid_ = false;           ///< the view is that of plane_view()
   std::vector<glm::dvec3> coordinates_;  ///< of a lens at the reference wavelength
@@ -84,7 +102,7 @@ class PvrrPatch {
   };
   std::optional<Drawn> drawn_;  ///< what the map holds
   PvrrMap map_;
-  std::size_t traced_rays_ = 0;
+  std::size_t traced_rays_ = 0, scene_rays_ = 0;
 };
 
 }  // namespace catoptra::render

@@ -86,7 +86,7 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
       glBlendFunc(GL_ONE, GL_ONE);
     }
     glUseProgram(programs.program(look, batch.weights.size(), geometry && b == 0).id());
-    RasterScene::set_mesh_origin(camera, side_->center_mm());
+    RasterScene::set_mesh_origin(camera, *side_);
     glUniform3f(kBlockedColor, blocked_color.x, blocked_color.y, blocked_color.z);
     glUniform1f(kOpticId, float(index));
     if (look == LensLook::map) glUniform1i(kCounts, b == 0);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -128,6 +129,9 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh) : center_mm_(area_
   const std::vector<std::uint32_t> edges = unique_edges(mesh);
   const std::vector<Vertex> skirt = make_skirt(mesh, center_mm_);
 
+  for (const Vertex& vertex : vertices) points_.push_back(vertex.position);
+  for (const Vertex& vertex : skirt) points_.push_back(vertex.position);
+
   vertices_ = make_static_buffer(std::as_bytes(std::span(vertices)));
   map_coordinates_ = make_dynamic_buffer(vertices.size() * sizeof(glm::vec3));
   triangles_ = make_static_buffer(std::as_bytes(std::span(triangles)));
@@ -141,6 +145,14 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh) : center_mm_(area_
   bind_attributes(surface_array_, 1, map_coordinates_, sizeof(glm::vec3), {{2, 3, 0}});
   edge_array_ = array_of(edges_, vertices_);
   skirt_array_ = array_of({}, skirt_vertices_);
+}
+
+double RasterOptic::farthest_mm(const RasterView& view) const {
+  const glm::dvec3 ahead = placement_.own_direction(-glm::transpose(view.rotation)[2]);
+  const glm::vec3 along(ahead);
+  float farthest = -std::numeric_limits<float>::infinity();
+  for (const glm::vec3& p : points_) farthest = std::max(farthest, glm::dot(p, along));
+  return farthest + glm::dot(center_mm_ - placement_.own_point(view.origin_mm), ahead);
 }
 
 GlVertexArray RasterOptic::make_array() const {

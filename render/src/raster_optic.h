@@ -3,8 +3,11 @@
 
 #include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
+#include "optics/placement.h"
 #include "render/src/gl_objects.h"
+#include "render/src/raster_view.h"
 #include "tessellate/optic_arrays.h"
 
 namespace catoptra::render {
@@ -18,7 +21,8 @@ class RasterOptic {
   /// Homogeneous map coordinates (s q, t q, q), one per vertex of the mesh.
   void set_map_coordinates(std::span<const glm::dvec3> coordinates);
 
-  /// Each draws with whatever program is in use, which must have been given `center_mm` as the mesh's origin.
+  /// Each draws with whatever program is in use, which must have been given the optic as its mesh
+  /// (RasterScene::set_mesh_origin).
   void draw_surface() const;
   /// The mesh's edges as lines.
   void draw_edges() const;
@@ -29,10 +33,20 @@ class RasterOptic {
   [[nodiscard]] GlVertexArray make_array() const;
   void draw_triangles(const GlVertexArray& array) const;
 
+  /// In the optic's own frame, as the mesh is.
   [[nodiscard]] const glm::dvec3& center_mm() const { return center_mm_; }
+
+  /// Where that frame is in the world.
+  void place(const optics::Placement& placement) { placement_ = placement; }
+  [[nodiscard]] const optics::Placement& placement() const { return placement_; }
+
+  /// The largest distance along the direction of `view`, of surface and skirt, mm.
+  [[nodiscard]] double farthest_mm(const RasterView& view) const;
 
  private:
   glm::dvec3 center_mm_{0};
+  optics::Placement placement_;
+  std::vector<glm::vec3> points_;  ///< of surface and skirt, relative to the centre
   GlBuffer vertices_, map_coordinates_, triangles_, edges_, skirt_vertices_;
   GlVertexArray surface_array_, edge_array_, skirt_array_;
   GLsizei triangle_indices_ = 0, edge_indices_ = 0, skirt_vertex_count_ = 0;

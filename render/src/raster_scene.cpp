@@ -12,8 +12,13 @@ namespace {
 
 // As in raster_view.glsl and raster_surface.*.glsl.
 constexpr std::size_t kMaxLights = 64;
-constexpr GLint kOriginHigh = 0, kOriginLow = 1, kAlbedo = 2, kEmissive = 3, kAlpha = 4;
+constexpr GLint kOriginHigh = 0, kOriginLow = 1, kAlbedo = 2, kEmissive = 3, kAlpha = 4, kMeshAxes = 16;
 constexpr GLuint kAlbedoUnit = 0, kOpticDepthUnit = 1, kSkyUnit = 7;
+
+// Triangles are drawn in pieces: small ones leave out and hide more, but each costs a draw.
+constexpr std::size_t kSmallestChunk = 64, kMostChunks = 256;
+// Chunks of so many triangles are looked at one by one where their box reaches an optic.
+constexpr std::size_t kFewTriangles = 128;
 
 struct GpuLight {
   glm::vec4 position, radiance;
@@ -52,6 +57,9 @@ RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : sc
   if (scene.lights.size() > kMaxLights)
     throw Error(scene.file, "light", "there are more than " + std::to_string(kMaxLights) + " lights",
                 "use mode raytrace, or fewer lights");
+  lights_ = scene.lights;
+  std::stable_partition(lights_.begin(), lights_.end(),
+                        [](const Light& light) { return light.kind == LightKind::directional; });
   view_uniforms_ = make_dynamic_buffer(sizeof(GpuView));
   nothing_ = make_vertex_array({});
   upload_surroundings();
@@ -66,10 +74,15 @@ RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : sc
 
 void RasterScene::upload_surroundings() {
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;
+  std::vector<glm::vec3>& positions = positions_;
+  std::vector<std::uint32_t>& indices = triangles_;
+  std::size_t triangles = 0;
+  for (const cad_import::TriangleMesh& mesh : scene_.surroundings) triangles += mesh.triangles.size();
+  const std::size_t largest = std::max(kSmallestChunk, triangles / kMostChunks);
   GLint first_texture = 0;
   for (const cad_import::TriangleMesh& mesh : scene_.surroundings) {
     const auto base = static_cast<std::uint32_t>(vertices.size());
+    positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
       vertices.push_back({mesh.positions[i], mesh.normals[i],
                           i < mesh.texture_coordinates.size() ? mesh.texture_coordinates[i] : glm::vec2(0)});
@@ -80,19 +93,17 @@ void RasterScene::upload_surroundings() {
     for (std::size_t m = 0; m < by_material.size(); ++m) {
       if (by_material[m].empty()) continue;
       const cad_import::Material& material = mesh.materials[m];
-      batches_.push_back({static_cast<GLsizei>(by_material[m].size()), indices.size(),
-                          material.texture < 0 ? -1 : first_texture + material.texture,
+      for (TriangleChunk chunk : chunk_triangles(positions, by_material[m], largest)) {
+        chunk.first += indices.size();
+        chunks_.push_back({batches_.size(), chunk});
+      }
+      batches_.push_back({material.texture < 0 ? -1 : first_texture + material.texture,
                           material.alpha_cutoff > 0, material.base_color, material.emissive, material.alpha,
                           material.alpha_cutoff, material.wrap});
       indices.insert(indices.end(), by_material[m].begin(), by_material[m].end());
     }
     first_texture += static_cast<GLint>(mesh.textures.size());
   }
-  // Opaque surfaces first, since they hide and cost least; then by texture, so that each is bound once.
-  std::stable_sort(batches_.begin(), batches_.end(), [](const Batch& a, const Batch& b) {
-    return std::tuple(a.alpha_test, a.texture, int(a.wrap)) <
-           std::tuple(b.alpha_test, b.texture, int(b.wrap));
-  });
   vertices_ = make_static_buffer(std::as_bytes(std::span(vertices)));
   indices_ = make_static_buffer(std::as_bytes(std::span(indices)));
   surroundings_ = make_vertex_array(indices_);
@@ -131,10 +142,17 @@ void RasterScene::upload_textures(const SceneTextures& textures) {
 }
 
 void RasterScene::optic_changed(std::size_t index) {
+  const optics::Placement placement = optics_[index].placement();
   optics_[index] = RasterOptic(scene_.optics[index].mesh);
   backs_[index] = back_of(scene_.optics[index]);
+  place_optic(index, placement);
   masks_.erase({index, optics::LensSide::front});
   masks_.erase({index, optics::LensSide::back});
+}
+
+void RasterScene::place_optic(std::size_t index, const optics::Placement& placement) {
+  optics_[index].place(placement);
+  if (backs_[index]) backs_[index]->place(placement);
 }
 
 const LensMask& RasterScene::exit_mask(std::size_t lens, optics::LensSide exit) {
@@ -152,10 +170,9 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   gpu.sky_center = glm::vec4(glm::vec3(directions.center), 0);
   gpu.sky_x = glm::vec4(glm::vec3(directions.dx), 0);
   gpu.sky_y = glm::vec4(glm::vec3(directions.dy), 0);
-  gpu.sky_color = glm::vec4(scene_.environment.color, sky_ ? 1 : 0);
-  gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, float(scene_.lights.size()), 0);
-  for (std::size_t i = 0; i < scene_.lights.size(); ++i)
-    gpu.lights[i] = gpu_light(scene_.lights[i], view.origin_mm);
+  gpu.sky_color = glm::vec4(scene_.environment.color, 0);
+  gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, 0, 0);
+  for (std::size_t i = 0; i < lights_.size(); ++i) gpu.lights[i] = gpu_light(lights_[i], view.origin_mm);
   update_buffer(view_uniforms_, std::as_bytes(std::span(&gpu, 1)));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_uniforms_.id());
   if (sky_) glBindTextureUnit(kSkyUnit, sky_.id());
@@ -169,18 +186,47 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
 }
 
 void RasterScene::set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm) {
-  const glm::dvec3 origin = view.origin_mm - mesh_origin_mm;
+  set_mesh_origin(view, mesh_origin_mm, {});
+}
+
+void RasterScene::set_mesh_origin(const RasterView& view, const RasterOptic& optic) {
+  set_mesh_origin(view, optic.center_mm(), optic.placement());
+}
+
+void RasterScene::set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm,
+                                  const optics::Placement& placement) {
+  const glm::dvec3 origin = placement.own_point(view.origin_mm) - mesh_origin_mm;
   const glm::vec3 high(origin), low(origin - glm::dvec3(high));
   set_vec3(kOriginHigh, high);
   set_vec3(kOriginLow, low);
+  const glm::mat3 axes(placement.rotation);
+  glUniformMatrix3fv(kMeshAxes, 1, GL_FALSE, &axes[0].x);
+}
+
+std::vector<std::string> RasterScene::shading_defines() const {
+  const auto directional = std::count_if(lights_.begin(), lights_.end(), [](const Light& light) {
+    return light.kind == LightKind::directional;
+  });
+  std::vector<std::string> defines{"LIGHTS " + std::to_string(lights_.size()),
+                                   "DIRECTIONAL_LIGHTS " + std::to_string(directional)};
+  if (sky_) defines.emplace_back("SKY_TEXTURE");
+  return defines;
 }
 
 void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
+  clear(view, pass);
+  draw_all(view, pass);
+}
+
+void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
   begin_view(view, pass.level_bias);
   const glm::vec4 background(scene_.environment.color, 1);
   glClearBufferfv(GL_COLOR, 0, &background.x);
   const float farthest = 0;
   glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
   if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   draw_surroundings(view, pass);
   if (pass.draw_optics) draw_optics(view, pass);
@@ -188,25 +234,57 @@ void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
   if (sky_ || pass.geometry) draw_sky(pass);
 }
 
+std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, const RasterPass& pass) const {
+  std::vector<Draw> draws;
+  for (std::size_t i = 0; i < chunks_.size(); ++i) {
+    const BoxInView box = box_in_view(view, chunks_[i].triangles.box);
+    if (!box.seen) continue;
+    Draw draw{i, box.nearest_mm, pass.clip_depth && box.nearest_mm <= pass.clip_reach_mm};
+    const TriangleChunk& chunk = chunks_[i].triangles;
+    // Few triangles in a large box, as of walls along a street, are seldom near where their box is.
+    if (draw.clip && chunk.count <= 3 * kFewTriangles) {
+      draw.nearest_mm =
+          nearest_triangle_mm(view, positions_, std::span(triangles_).subspan(chunk.first, chunk.count));
+      draw.clip = draw.nearest_mm <= pass.clip_reach_mm;
+    }
+    draws.push_back(draw);
+  }
+  // From front to back, so that what is hidden is not shaded; alpha-tested surfaces last, since they cost
+  // more and hide less. Where chunks are equally near their order in the file decides.
+  std::stable_sort(draws.begin(), draws.end(), [&](const Draw& a, const Draw& b) {
+    return std::tuple(batches_[chunks_[a.chunk].batch].alpha_test, a.nearest_mm) <
+           std::tuple(batches_[chunks_[b.chunk].batch].alpha_test, b.nearest_mm);
+  });
+  return draws;
+}
+
+void RasterScene::set_material(const Batch& batch) const {
+  if (batch.texture >= 0) {
+    glBindTextureUnit(kAlbedoUnit, textures_[static_cast<std::size_t>(batch.texture)].id());
+    glBindSampler(kAlbedoUnit, samplers_[static_cast<std::size_t>(batch.wrap)].id());
+  }
+  set_vec3(kAlbedo, batch.albedo);
+  set_vec3(kEmissive, batch.emissive);
+  if (batch.alpha_test) glUniform2f(kAlpha, batch.alpha, batch.cutoff);
+}
+
 void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pass) {
   glBindVertexArray(surroundings_.id());
   GLuint program = 0;
-  for (const Batch& batch : batches_) {
+  const Batch* material = nullptr;
+  for (const Draw& draw : draws_of(view, pass)) {
+    const Chunk& chunk = chunks_[draw.chunk];
+    const Batch& batch = batches_[chunk.batch];
     const GLuint wanted =
-        surface_program(batch.texture >= 0, batch.alpha_test, pass.clip_depth != nullptr, pass.geometry).id();
+        surface_program(batch.texture >= 0, batch.alpha_test, draw.clip, pass.geometry).id();
     if (wanted != program) {
       glUseProgram(program = wanted);
       set_mesh_origin(view, glm::dvec3(0));
+      material = nullptr;
     }
-    if (batch.texture >= 0) {
-      glBindTextureUnit(kAlbedoUnit, textures_[static_cast<std::size_t>(batch.texture)].id());
-      glBindSampler(kAlbedoUnit, samplers_[static_cast<std::size_t>(batch.wrap)].id());
-    }
-    set_vec3(kAlbedo, batch.albedo);
-    set_vec3(kEmissive, batch.emissive);
-    if (batch.alpha_test) glUniform2f(kAlpha, batch.alpha, batch.cutoff);
-    glDrawElements(GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(batch.first * sizeof(std::uint32_t)));
+    if (material != &batch) set_material(*(material = &batch));
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(chunk.triangles.count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(chunk.triangles.first * sizeof(std::uint32_t)));
   }
   glBindSampler(kAlbedoUnit, 0);
 }
@@ -215,7 +293,7 @@ void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
-    set_mesh_origin(view, optics_[i].center_mm());
+    set_mesh_origin(view, optics_[i]);
     set_vec3(kAlbedo, scene_.optics[i].reflectance);
     set_vec3(kEmissive, glm::vec3(0));
     optics_[i].draw_surface();
@@ -238,7 +316,7 @@ void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& su
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
-  set_mesh_origin(view, surface.center_mm());
+  set_mesh_origin(view, surface);
   surface.draw_surface_with_skirt();
   glDisable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
@@ -249,7 +327,7 @@ const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bo
       unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
-  std::vector<std::string> defines;
+  std::vector<std::string> defines = shading_defines();
   if (textured) defines.emplace_back("TEXTURED");
   if (alpha_test) defines.emplace_back("ALPHA_TEST");
   if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
@@ -264,7 +342,8 @@ const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bo
 const GlProgram& RasterScene::sky_program(bool geometry) {
   const auto found = sky_programs_.find(geometry);
   if (found != sky_programs_.end()) return found->second;
-  const std::vector<std::string> defines(geometry ? 1 : 0, "GEOMETRY");
+  std::vector<std::string> defines = shading_defines();
+  if (geometry) defines.emplace_back("GEOMETRY");
   return sky_programs_
       .emplace(geometry,
                make_program({"raster_view.glsl", "raster_sky.vert.glsl"},

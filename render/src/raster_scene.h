@@ -6,12 +6,15 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "optics/lens_path.h"
+#include "optics/placement.h"
 #include "render/scene.h"
 #include "render/src/gl_objects.h"
+#include "render/src/raster_chunks.h"
 #include "render/src/raster_lens_mask.h"
 #include "render/src/raster_optic.h"
 #include "render/src/raster_view.h"
@@ -24,6 +27,7 @@ struct RasterPass {
   bool geometry = false;  ///< also write world position and normal; the bound target must have them
   float level_bias = 0;   ///< added to the textures' level of detail (maps: see PvrrMap)
   const GlTexture* clip_depth = nullptr;  ///< depth of the optic in this view: what is nearer is not drawn
+  double clip_reach_mm = 0;               ///< that depth is nowhere beyond this distance along the view
   bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
   std::optional<std::size_t> except;      ///< ... but not this one
 };
@@ -38,6 +42,8 @@ class RasterScene {
 
   /// Uploads the mesh of optic `index` again.
   void optic_changed(std::size_t index);
+  /// Draws it from now on where `placement` takes it to.
+  void place_optic(std::size_t index, const optics::Placement& placement);
   /// A mirror, or the front of a lens.
   [[nodiscard]] RasterOptic& optic(std::size_t index) { return optics_[index]; }
   [[nodiscard]] const RasterOptic& optic(std::size_t index) const { return optics_[index]; }
@@ -50,6 +56,9 @@ class RasterScene {
 
   /// Clears the bound target and draws surroundings, optics as asked, and the sky.
   void draw(const RasterView& view, const RasterPass& pass);
+  /// The same in two steps. What is drawn between them hides what is behind it before that costs anything.
+  void clear(const RasterView& view, const RasterPass& pass);
+  void draw_all(const RasterView& view, const RasterPass& pass);
 
   /// Draws only the depth of an optical surface and of its continuation beyond the border, the farthest where
   /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
@@ -62,21 +71,38 @@ class RasterScene {
   /// Sets the uniforms by which a mesh with origin `mesh_origin_mm` finds its place relative to the view
   /// (program in use).
   static void set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm);
+  /// The same for a mesh in a frame of its own, at `mesh_origin_mm` in it.
+  static void set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm,
+                              const optics::Placement& placement);
+  static void set_mesh_origin(const RasterView& view, const RasterOptic& optic);
+
+  /// For programs that shade, see raster_shading.glsl.
+  [[nodiscard]] std::vector<std::string> shading_defines() const;
 
  private:
   struct Batch {
-    GLsizei count;
-    std::size_t first;  ///< index in the common index buffer
-    GLint texture;      ///< index in textures_, -1: none
+    GLint texture;  ///< index in textures_, -1: none
     bool alpha_test;
     glm::vec3 albedo, emissive;
     float alpha, cutoff;
     cad_import::TextureWrap wrap;
   };
+  /// What is drawn in one piece.
+  struct Chunk {
+    std::size_t batch;
+    TriangleChunk triangles;  ///< in the common index buffer
+  };
+  struct Draw {
+    std::size_t chunk;
+    double nearest_mm;
+    bool clip;
+  };
 
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
+  [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
   void draw_surroundings(const RasterView& view, const RasterPass& pass);
+  void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);
   /// Compiled on first use, for each combination of the shader's variants.
@@ -89,7 +115,11 @@ class RasterScene {
   std::vector<GlTexture> textures_;
   std::array<GlSampler, 3> samplers_;  ///< by TextureWrap
   GlTexture sky_;
+  std::vector<Light> lights_;  ///< the directional ones first
   std::vector<Batch> batches_;
+  std::vector<Chunk> chunks_;
+  std::vector<glm::vec3> positions_;      ///< of the surroundings, once more on the CPU ...
+  std::vector<std::uint32_t> triangles_;  ///< ... with the common index buffer, to find what is near
   std::vector<RasterOptic> optics_;
   std::vector<std::optional<RasterOptic>> backs_;  ///< of the lenses
   std::map<unsigned, GlProgram> surface_programs_;

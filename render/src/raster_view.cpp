@@ -56,6 +56,20 @@ RasterView::Directions RasterView::directions() const {
   return {center, to_world * eye(1, 0) - center, to_world * eye(0, 1) - center};
 }
 
+RasterView in_own_frame(RasterView view, const optics::Placement& placement) {
+  view.origin_mm = placement.own_point(view.origin_mm);
+  view.rotation = view.rotation * placement.rotation;
+  return view;
+}
+
+optics::VirtualView placed(optics::VirtualView view, const optics::Placement& placement) {
+  view.viewpoint_mm = placement.point(view.viewpoint_mm);
+  view.direction = placement.direction(view.direction);
+  view.up = placement.direction(view.up);
+  view.right = placement.direction(view.right);
+  return view;
+}
+
 RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px) {
   const glm::dvec3 ahead = camera.target_mm - camera.eye_mm;
   const glm::dvec3 across = glm::cross(ahead, camera.up);

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "optics/placement.h"
 #include "optics/virtual_view.h"
 #include "render/scene.h"
 
@@ -31,6 +32,10 @@ struct RasterView {
   };
   [[nodiscard]] Directions directions() const;
 };
+
+/// The same view in the frame of an optic, and a view in that frame in the world.
+[[nodiscard]] RasterView in_own_frame(RasterView view, const optics::Placement& placement);
+[[nodiscard]] optics::VirtualView placed(optics::VirtualView view, const optics::Placement& placement);
 
 /// The picture's view: infinite far plane, near plane at kCameraNear. `offset_px` moves the place in every
 /// pixel at which the scene is sampled (x right, y down, see sampling.h).

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "cad_import/error.h"
+#include "optics/placement.h"
 #include "optics/ray_scene.h"
 #include "render/src/cubemap_frame.h"
 #include "render/src/gl_context.h"
@@ -22,24 +24,28 @@ void widen(cad_import::BoundingBox& box, const glm::dvec3& point) {
   box.max = glm::max(box.max, point);
 }
 
-cad_import::BoundingBox bounds_of(const Scene& scene) {
+cad_import::BoundingBox bounds_of(const std::vector<cad_import::TriangleMesh>& surroundings) {
   cad_import::BoundingBox box;
-  for (const auto& mesh : scene.surroundings)
+  for (const auto& mesh : surroundings)
     for (const glm::vec3& p : mesh.positions) widen(box, glm::dvec3(p));
-  for (const auto& optic : scene.optics)
-    for (const auto* mesh : {&optic.mesh, &optic.back.mesh})
-      for (const auto& vertex : mesh->vertices) widen(box, vertex.position_mm);
+  return box;
+}
+
+cad_import::BoundingBox bounds_of(const optics::Optic& optic) {
+  cad_import::BoundingBox box;
+  for (const auto* mesh : {&optic.mesh, &optic.back.mesh})
+    for (const auto& vertex : mesh->vertices) widen(box, vertex.position_mm);
   return box;
 }
 
 /// Everything that lives on the GPU. Members go in reverse order, with the context current (see ~Impl).
 struct Gpu {
   Gpu(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays,
-      const RayTracer& tracer)
+      const cad_import::BoundingBox& bounds)
       : raster(scene, textures),
-        pvrr(scene, raster, rays, bounds_of(scene)),
+        pvrr(scene, raster, rays, bounds),
         cubemap(scene, raster),
-        hybrid(scene, raster, tracer) {}
+        hybrid(scene, raster) {}
   RasterScene raster;
   RasterPicture picture;
   PvrrFrame pvrr;
@@ -50,12 +56,19 @@ struct Gpu {
 }  // namespace
 
 struct Renderer::Impl {
-  explicit Impl(const Scene& s) : scene(s), textures(load_textures(s)) {
+  explicit Impl(const Scene& s)
+      : scene(s),
+        textures(load_textures(s)),
+        placements(s.optics.size()),
+        surroundings_box(bounds_of(s.surroundings)),
+        untraced(s.optics.size(), false) {
     for (std::size_t m = 0; m < scene.surroundings.size(); ++m)
       rays.add_surroundings(scene.surroundings[m],
                             make_alpha_test(scene.surroundings[m], textures.textures[m]));
-    for (const optics::Optic& optic : scene.optics)
+    for (const optics::Optic& optic : scene.optics) {
       optic_objects.push_back(rays.add_optic(mesh_for_rays(optic)));
+      optic_boxes.push_back(bounds_of(optic));
+    }
     rays.commit();
     tracer = std::make_unique<RayTracer>(scene, textures, rays);
   }
@@ -73,19 +86,65 @@ struct Renderer::Impl {
   RenderResult render_on_gpu(Mode mode, const Camera& camera, const FrameOptions& options) {
     if (!context) context = GlContext::create();
     const GlScope scope(*context);
-    if (!gpu) gpu = std::make_unique<Gpu>(scene, textures, rays, *tracer);
-    RenderResult result = mode == Mode::pvrr      ? gpu->pvrr.render(camera, options, gpu->picture)
-                          : mode == Mode::cubemap ? gpu->cubemap.render(camera, options, gpu->picture)
-                                                  : gpu->hybrid.render(camera, options, gpu->picture);
+    if (!gpu) {
+      gpu = std::make_unique<Gpu>(scene, textures, rays, bounds());
+      for (std::size_t i = 0; i < placements.size(); ++i) place_on_gpu(i);
+    }
+    RenderResult result = mode == Mode::pvrr ? gpu->pvrr.render(camera, options, gpu->picture)
+                          : mode == Mode::cubemap
+                              ? gpu->cubemap.render(camera, options, gpu->picture)
+                              : gpu->hybrid.render(camera, options, gpu->picture, placed_tracer());
     context->throw_if_errors();
     return result;
+  }
+
+  void place_on_gpu(std::size_t index) {
+    gpu->raster.place_optic(index, placements[index]);
+    gpu->pvrr.place_optic(index, placements[index], bounds());
+  }
+
+  /// Of everything, in the world.
+  cad_import::BoundingBox bounds() const {
+    cad_import::BoundingBox box = surroundings_box;
+    for (std::size_t i = 0; i < optic_boxes.size(); ++i) {
+      const auto optic = optics::placed(optic_boxes[i], placements[i]);
+      box.min = glm::min(box.min, optic.min);
+      box.max = glm::max(box.max, optic.max);
+    }
+    return box;
+  }
+
+  /// The ray tracer with every optic where it is now. It works in the world, on optics that have been moved
+  /// there.
+  const RayTracer& placed_tracer() {
+    if (std::find(untraced.begin(), untraced.end(), true) == untraced.end()) return *tracer;
+    const bool first = !placed_scene;
+    if (first) placed_scene = std::make_unique<Scene>(scene);
+    for (std::size_t i = 0; i < untraced.size(); ++i) {
+      if (!untraced[i]) continue;
+      placed_scene->optics[i] = optics::placed(scene.optics[i], placements[i]);
+      rays.update_optic(optic_objects[i], mesh_for_rays(placed_scene->optics[i]));
+      untraced[i] = false;
+      if (!first) tracer->optic_changed(i);
+    }
+    rays.commit();
+    if (first) tracer = std::make_unique<RayTracer>(*placed_scene, textures, rays);
+    return *tracer;
   }
 
   const Scene& scene;
   SceneTextures textures;
   optics::RayScene rays;
   std::vector<std::uint32_t> optic_objects;  ///< numbers in `rays`
+
+  std::vector<optics::Placement> placements;
+  cad_import::BoundingBox surroundings_box;
+  std::vector<cad_import::BoundingBox> optic_boxes;  ///< of each optic in its own frame
+
+  std::unique_ptr<Scene> placed_scene;  ///< as the tracer knows it; null while no optic has left its place
+  std::vector<bool> untraced;           ///< optics that the tracer still has where or as they were
   std::unique_ptr<RayTracer> tracer;
+
   std::unique_ptr<GlContext> context;
   std::unique_ptr<Gpu> gpu;
 };
@@ -99,24 +158,37 @@ RenderResult Renderer::render(Mode mode, const Camera& camera, const FrameOption
                 "cannot make a picture of " + std::to_string(options.width) + " x " +
                     std::to_string(options.height) + " pixels with " + std::to_string(options.samples) +
                     " samples");
-  if (mode == Mode::raytrace) return impl_->tracer->render(camera, options);
+  if (mode == Mode::raytrace) return impl_->placed_tracer().render(camera, options);
   return impl_->render_on_gpu(mode, camera, options);
 }
 
 void Renderer::optic_changed(std::size_t index) {
   const optics::Optic& optic = impl_->scene.optics.at(index);
-  impl_->rays.update_optic(impl_->optic_objects[index], mesh_for_rays(optic));
-  impl_->rays.commit();
-  impl_->tracer->optic_changed(index);
+  impl_->optic_boxes[index] = bounds_of(optic);
+  if (impl_->placed_scene) {
+    impl_->untraced[index] = true;
+  } else {
+    impl_->rays.update_optic(impl_->optic_objects[index], mesh_for_rays(optic));
+    impl_->rays.commit();
+    impl_->tracer->optic_changed(index);
+  }
   if (!impl_->gpu) return;
   const GlScope scope(*impl_->context);
   impl_->gpu->raster.optic_changed(index);
-  impl_->gpu->pvrr.optic_changed(index);
+  impl_->gpu->pvrr.optic_changed(index, impl_->bounds());
   impl_->gpu->cubemap.optic_changed(index);
 }
 
+void Renderer::place_optic(std::size_t index, const glm::dmat4& placement) {
+  const auto placed = optics::placement_from_matrix(placement, impl_->scene.optics.at(index).name);
+  if (placed == impl_->placements[index]) return;
+  impl_->placements[index] = placed;
+  impl_->untraced[index] = true;
+  if (impl_->gpu) impl_->place_on_gpu(index);
+}
+
 double Renderer::bare_packet_ms(const Camera& camera, const FrameOptions& options) const {
-  return impl_->tracer->bare_packet_ms(camera, options);
+  return impl_->placed_tracer().bare_packet_ms(camera, options);
 }
 
 }  // namespace catoptra::render

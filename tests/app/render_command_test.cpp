@@ -227,7 +227,7 @@ TEST(BenchCommand, JsonHasEveryRatio) {
   const CommandResult result = run_catoptra({"bench", scene, "--frames", "2", "--json"});
   ASSERT_EQ(result.code, 0) << result.errors;
   const json report = json::parse(result.output);
-  for (const char* mode : {"pvrr", "pvrr_static", "hybrid", "raytrace", "cubemap"}) {
+  for (const char* mode : {"pvrr", "pvrr_riding", "pvrr_static", "hybrid", "raytrace", "cubemap"}) {
     const json& entry = report.at("modes").at(mode);
     EXPECT_EQ(entry.at("frames"), 2) << mode;
     for (const char* key : {"min", "median", "max"})
@@ -239,8 +239,8 @@ TEST(BenchCommand, JsonHasEveryRatio) {
   EXPECT_GT(report.at("triangles").get<int>(),
             4 + 128);  // the wall and the 8 x 8 cells of the mirror, and its back and edge
   for (const char* key :
-       {"pvrr_over_raster_passes", "pvrr_static_over_raster_passes", "raytrace_over_bare_packets",
-        "optic_commit_over_full_build", "tessellate_over_brepmesh"})
+       {"pvrr_over_raster_passes", "pvrr_riding_over_raster_passes", "pvrr_static_over_raster_passes",
+        "raytrace_over_bare_packets", "optic_commit_over_full_build", "tessellate_over_brepmesh"})
     EXPECT_GT(report.at(key).get<double>(), 0) << key;
   EXPECT_NE(run_catoptra({"bench", scene, "--frames", "1", "--modes", "hybrid"}).output.find("hybrid"),
             std::string::npos);
