@@ -53,6 +53,9 @@ class SpanAxis {
     double upper;         // where the next one begins; not a number for the last
     double middle, rate;  // centre, 2 / length
   };
+  friend class BSplineSurface;
+  [[nodiscard]] Position locate_inline(double t) const;
+
   std::vector<double> breaks_;  // distinct knots within the domain
   std::vector<Span> spans_;
   std::vector<int> first_pole_;       // per span

@@ -21,6 +21,14 @@ namespace catoptra::cad_import {
 ///   trunk, the curvature four times differentiable along the meridian).
 enum class LensFrontForm { sphere, conic, asphere, freeform };
 
+/// The back's form away from its vertex, where all forms have the same two curvatures.
+///   toric: a circle turned about an axis in its plane, as the trade grinds and ISO 13666 defines. The
+///   steeper principal section is the circle, the flatter one the way of its vertex (a tyre); a sphere where
+///   both are equal, a cylinder where one is flat. biconic: z = (c1 x^2 + c2 y^2) / (1 + sqrt(1 - (1 + k)
+///   (c1^2 x^2 + c2^2 y^2))), whose principal sections are circles too (conics for k != 0, which makes it
+///   atoric); between them it departs from the torus with the fourth power of the distance.
+enum class LensBackForm { toric, biconic };
+
 /// A lens to order in the frame of docs/conventions.md: front vertex at the origin, front towards +z, x right
 /// and y up for someone who looks at the front. Powers are back vertex powers, light coming along the axis.
 /// The prescription holds exactly along the axis; with prism it refers to the deviated ray, and its axes to
@@ -40,7 +48,9 @@ struct LensBlank {
   LensFrontForm front = LensFrontForm::sphere;
   double conic = 0;                ///< k of conic and asphere: 0 sphere, -1 paraboloid
   std::vector<double> asphere_mm;  ///< asphere only: a_2 (1/mm^3), a_3 (1/mm^5), ...
-  double back_conic = 0;           ///< k of both principal sections of the back: not 0 makes it atoric
+  /// Left out: toric, or biconic where `back_conic` needs it.
+  std::optional<LensBackForm> back;
+  double back_conic = 0;  ///< biconic only: k of both principal sections, not 0 makes it atoric
   /// One of the two, or neither: then at least 2 mm (1.5 mm from index 1.6 on) at the vertex and 1 mm at the
   /// rim.
   std::optional<double> center_thickness_mm;
@@ -52,6 +62,7 @@ struct LensBlank {
 /// What came of it. Radii are 0 where flat and positive where the centre lies behind the surface (as for both
 /// surfaces of the usual meniscus).
 struct LensBlankReport {
+  LensBackForm back = LensBackForm::toric;
   double front_curve_d = 0, front_radius_mm = 0;
   double back_radius1_mm = 0, back_radius2_mm = 0;  ///< of the principal sections at the back vertex
   double center_thickness_mm = 0, edge_thickness_min_mm = 0, edge_thickness_max_mm = 0;
@@ -59,11 +70,9 @@ struct LensBlankReport {
 
 /// The ideal surfaces of a lens. Immutable, cheap to copy, safe from many threads.
 ///
-/// The back is the biconic z = (c1 x^2 + c2 y^2) / (1 + sqrt(1 - (1 + k) (c1^2 x^2 + c2^2 y^2))) in its own
-/// frame, which the prism tilts at the back vertex; its sections along the principal meridians are circles
-/// (conics for k != 0). c1, c2 and their axis follow from the condition that the wavefront that leaves along
-/// the deviated ray has the prescribed powers: generalised Coddington equations (Landgrave and Moya-Cessa
-/// 1996).
+/// The back has its form (LensBackForm) in a frame of its own, which the prism tilts at the back vertex. Its
+/// curvatures there and their axis follow from the condition that the wavefront that leaves along the
+/// deviated ray has the prescribed powers: generalised Coddington equations (Landgrave and Moya-Cessa 1996).
 class LensShape {
  public:
   /// Throws Error naming the value at fault: an index or thickness that is none, a radius below the lens's

@@ -12,6 +12,10 @@
 
 namespace catoptra::cad_import {
 
+/// Integral of the outward unit normal over a face, mm^2, by Stokes' theorem half the integral of r x dr
+/// along its boundary; the sides of seams cancel.
+[[nodiscard]] glm::dvec3 area_vector(const Face& face);
+
 /// The optical axis of two surfaces and what they are along it.
 struct LensGeometry {
   glm::dvec3 axis{0, 0, 1};  ///< unit, from the back to the front

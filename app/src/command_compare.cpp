@@ -1,4 +1,6 @@
 // catoptra compare SCENE -o DIR
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -88,6 +90,19 @@ void print_table(const Session& session, const std::vector<ModeResult>& results,
   std::printf("(' = arcmin at the optic between the exact direction and what is shown)\n");
 }
 
+/// Optics of which the reference shows no pixel, so that their errors are those of nothing.
+std::vector<std::string> unseen_optics(const render::Frame& reference, const render::Scene& scene) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < scene.optics.size(); ++i)
+    if (std::find(reference.optic_id.begin(), reference.optic_id.end(), std::int32_t(i)) ==
+        reference.optic_id.end())
+      warnings.push_back("optic '" + scene.optics[i].name +
+                         "' shows in no pixel: its zeros in the table say nothing (see camera.eye, "
+                         "camera.target and what stands before it)");
+  if (scene.optics.empty()) warnings.push_back("the scene has no optic: only the pictures are compared");
+  return warnings;
+}
+
 /// The check of --max-error-arcmin: every compared pixel of every optic in every mode. Where no pixel of any
 /// optic was compared nothing was shown to hold, so the check does not pass.
 int check_errors(const Session& session, const std::vector<ModeResult>& results, double allowed_arcmin) {
@@ -124,6 +139,10 @@ int run_compare(const CompareOptions& options, const CommonOptions& common) {
   frame_options.geometry = true;
   const render::RenderResult reference = session.render(render::Mode::raytrace, frame_options);
   write_picture(reference.frame, folder / "raytrace.png", false);
+  for (std::string& warning : unseen_optics(reference.frame, session.scene())) {
+    spdlog::warn(warning);
+    session.file.scene.warnings.push_back(std::move(warning));
+  }
   const FrameTiming reference_timing = time_mode(session, render::Mode::raytrace, options.frames);
 
   std::vector<ModeResult> results;
@@ -160,7 +179,7 @@ Command add_compare_command(CLI::App& root, CommonOptions& common) {
       ->option_text("MODE,...");
   app->add_option("--max-error-arcmin", options->max_error_arcmin,
                   "Exit code 3 where a pixel's error exceeds it")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0))
       ->option_text("A");
   app->add_option("--frames", options->frames, "Frames to time per mode (default 3)")
       ->check(CLI::Range(1, 100000))

@@ -53,6 +53,48 @@ std::string command_path(const CLI::App* app) {
   return app->get_parent() ? command_path(app->get_parent()) + " " + app->get_name() : "catoptra";
 }
 
+/// Names that a user may have meant: options of a command, or its subcommands.
+std::vector<std::string> names_like(const CLI::App& app, bool options) {
+  std::vector<std::string> names;
+  if (options) {
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  } else {
+    for (const CLI::App* command :
+         app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
+      names.push_back(command->get_name());
+  }
+  return names;
+}
+
+/// What the parser says of the first word that it could not place, or empty: a misspelt option also leaves
+/// what it should have set missing, and is then what there is to mend.
+std::string unknown_word(const CLI::App& chosen, const CLI::App& root, int argc, char** argv) {
+  const std::vector<std::string> left = root.remaining(true);
+  const auto word = std::find_if(argv + 1, argv + argc, [&](const char* argument) {
+    return std::find(left.begin(), left.end(), argument) != left.end();
+  });
+  if (word == argv + argc) return {};
+  const std::string text = *word, help = "see " + command_path(&chosen) + " --help";
+  if (text.size() > 1 && text[0] == '-') {
+    const std::string nearest = nearest_name(text.substr(0, text.find('=')), names_like(chosen, true));
+    return "unknown option '" + text + "' (" + (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
+           help + ")";
+  }
+  const std::vector<std::string> commands = names_like(chosen, false);
+  if (commands.empty()) return "unexpected argument '" + text + "' (" + help + ")";
+  return "unknown command '" + text + "' (" + hint_for_unknown(text, commands) + "; " + help + ")";
+}
+
+/// One line for arguments that the parser refuses.
+std::string told(const CLI::ParseError& error, const CLI::App& root, int argc, char** argv) {
+  const CLI::App* chosen = deepest_parsed(&root);
+  const bool of_words =
+      dynamic_cast<const CLI::ExtrasError*>(&error) || dynamic_cast<const CLI::RequiredError*>(&error);
+  const std::string word = of_words ? unknown_word(*chosen, root, argc, argv) : std::string{};
+  return word.empty() ? std::string(error.what()) + " (see " + command_path(chosen) + " --help)" : word;
+}
+
 int run_parsed(const CommandLine& line) {
   const CLI::App* chosen = deepest_parsed(&line.root);
   for (const Command& command : line.commands)
@@ -71,7 +113,8 @@ CLI::App* add_subcommand(CLI::App& parent, CommonOptions& common, const std::str
 }
 
 CommandLine::CommandLine()
-    : root("See what a curved mirror does, straight from CAD, with a stated error", "catoptra") {
+    : root("See what a curved mirror or a spectacle lens does, straight from CAD, with a stated error",
+           "catoptra") {
   add_common_options(root, common);
   commands = {add_info_command(root, common), add_render_command(root, common),
               add_compare_command(root, common), add_bench_command(root, common)};
@@ -119,8 +162,7 @@ int run_command_line(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       if (error.get_exit_code() == 0)
         return line.root.exit(error, std::cout, std::cerr);  // --help, --version
-      const std::string command = command_path(deepest_parsed(&line.root));
-      return complain(kExitUsage, std::string(error.what()) + " (see " + command + " --help)");
+      return complain(kExitUsage, told(error, line.root, argc, argv));
     }
     set_up_log(line.common);
     return run_parsed(line);

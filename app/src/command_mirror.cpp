@@ -46,11 +46,12 @@ void set_outline(const MakeOptions& options, cad_import::MirrorBlank& blank) {
     blank.outline = cad_import::MirrorOutline::rounded;
   } else {
     blank.outline = cad_import::MirrorOutline::polygon;
-    blank.polygon = cad_import::read_outline(options.outline);
+    blank.polygon = outline_corners(options.outline, {"rect", "rounded"});
   }
 }
 
 int run_make(const MakeOptions& options) {
+  check_step_path(options.output);
   cad_import::MirrorBlank blank;
   set_radii(options, blank);
   set_aspheric_part(options, blank);
@@ -66,28 +67,43 @@ int run_make(const MakeOptions& options) {
 void add_make_options(CLI::App& app, MakeOptions& options) {
   app.add_option("--radius", options.radius,
                  "Radius of curvature in mm; negative: concave; 0: plane (default 1200)")
+      ->check(finite())
       ->option_text("R");
   app.add_option("--radius-h", options.radius_h, "Radius of the horizontal section in mm, with --radius-v")
+      ->check(finite())
       ->option_text("RH");
-  app.add_option("--radius-v", options.radius_v, "Radius of the vertical section in mm")->option_text("RV");
+  app.add_option("--radius-v", options.radius_v, "Radius of the vertical section in mm")
+      ->check(finite())
+      ->option_text("RV");
   app.add_flag("--aspheric", options.aspheric,
                "Outer strip whose curvature grows towards the edge (door mirrors)");
   app.add_option("--aspheric-boundary", options.aspheric_boundary,
                  "Where the strip begins, mm from the pole (default 40)")
+      ->check(at_least(0))
       ->option_text("X");
   app.add_option("--aspheric-edge-radius", options.aspheric_edge_radius,
                  "Radius at the strip's outer edge in mm (default 300)")
+      ->check(above(0))
       ->option_text("R");
   app.add_flag("--aspheric-minus-x", options.towards_minus_x, "The strip lies on the -x side");
-  app.add_option("--width", options.width, "Width in mm, along x (default 170)")->option_text("W");
-  app.add_option("--height", options.height, "Height in mm, along y (default 110)")->option_text("H");
-  app.add_option("--thickness", options.thickness, "Thickness in mm (default 2)")->option_text("T");
+  app.add_option("--width", options.width, "Width in mm, along x (default 170)")
+      ->check(above(0))
+      ->option_text("W");
+  app.add_option("--height", options.height, "Height in mm, along y (default 110)")
+      ->check(above(0))
+      ->option_text("H");
+  app.add_option("--thickness", options.thickness, "Thickness in mm (default 2)")
+      ->check(above(0))
+      ->option_text("T");
   app.add_option("--outline", options.outline,
                  "rect, rounded, or a file with one corner \"x y\" in mm per line")
       ->option_text("rect|rounded|FILE");
   app.add_option("--corner-radius", options.corner_radius, "Of a rounded outline, mm (default 20)")
+      ->check(above(0))
       ->option_text("R");
-  app.add_option("-o,--output", options.output, "STEP file to write")->required()->option_text("MIRROR.step");
+  app.add_option("-o,--output", options.output, "STEP file to write, .step or .stp")
+      ->required()
+      ->option_text("MIRROR.step");
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
       ->option_text("IMAGE");
   app->add_option("--reference-threshold", options->reference_threshold,
                   "Largest mean FLIP difference allowed (default 0.01)")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->option_text("X");
   return {app, [options, &common] { return run_render(*options, common); }};
 }

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,22 @@ struct CommandLine {
   std::vector<Command> commands;
   CommandLine();
 };
+
+/// Checks of numbers for CLI::Option::check: not-a-number and infinities are refused by each, so that what is
+/// out of range is wrong usage (exit 2) before any work.
+[[nodiscard]] CLI::Validator finite();
+[[nodiscard]] CLI::Validator between(double min, double max);
+[[nodiscard]] CLI::Validator above(double min);
+[[nodiscard]] CLI::Validator at_least(double min);
+
+/// Throws UsageError unless `file` ends in .step or .stp (any letter case): what the lens and mirror makers
+/// write.
+void check_step_path(const std::string& file);
+
+/// The corners of --outline, `file`. `words`: outlines that have a name of their own. Throws UsageError for a
+/// word that is neither a file nor one of them, else as cad_import::read_outline.
+[[nodiscard]] std::vector<glm::dvec2> outline_corners(const std::string& file,
+                                                      const std::vector<std::string>& words);
 
 /// "1280,720" (or "1280x720"). Throws UsageError.
 [[nodiscard]] glm::ivec2 parse_resolution(const std::string& text);

@@ -1,12 +1,12 @@
 #include "app/src/lens_sides.h"
 
 #include <algorithm>
+#include <cctype>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <string>
 
 #include "cad_import/error.h"
-#include "cad_import/lens_faces.h"
 #include "optics/exact_hit.h"
 #include "optics/ray_scene.h"
 
@@ -38,15 +38,18 @@ bool is_closed(const CadModel& model, std::span<const int> faces) {
   });
 }
 
-/// Sum of the faces' normals at the middle of their parameters, by area.
-glm::dvec3 mean_normal(const std::vector<Face>& faces) {
+glm::dvec3 area_vector(std::span<const Face> faces) {
   glm::dvec3 sum(0);
-  for (const Face& face : faces) {
-    const auto domain = face.surface->domain();
-    sum += face.area_mm2 * face.surface->unit_normal(0.5 * (domain.u_min + domain.u_max),
-                                                     0.5 * (domain.v_min + domain.v_max));
-  }
+  for (const Face& face : faces) sum += cad_import::area_vector(face);
   return sum;
+}
+
+bool called(std::span<const Face> faces, const std::string& name) {
+  return std::any_of(faces.begin(), faces.end(), [&](const Face& face) {
+    std::string text = face.name;
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text.find(name) != std::string::npos;
+  });
 }
 
 void turn_over(std::vector<Face>& faces) {
@@ -89,16 +92,46 @@ std::vector<Face> faces_at(const CadModel& model, std::span<const int> indices) 
   return faces;
 }
 
-void turn_normals_outwards(std::vector<Face>& front, std::vector<Face>& back, const std::string& file) {
-  const glm::dvec3 axis = cad_import::measure_lens(front, back, file).axis;
-  if (glm::dot(mean_normal(front), axis) < 0) turn_over(front);
-  if (glm::dot(mean_normal(back), axis) > 0) turn_over(back);
+bool is_mirror_glass(const CadModel& model) {
+  const auto has = [&](const char* name) {
+    return std::any_of(model.faces.begin(), model.faces.end(),
+                       [&](const Face& face) { return face.name == name; });
+  };
+  return has("Glass") && has("Back") && has("Edge");
+}
+
+std::optional<std::string> exchanged_sides(std::span<const Face> front, std::span<const Face> back,
+                                           const cad_import::LensGeometry& geometry) {
+  const bool front_right = called(front, "front"), back_right = called(back, "back");
+  if (called(front, "back") && !front_right) return "the front is called 'back' in the file";
+  if (called(back, "front") && !back_right) return "the back is called 'front' in the file";
+  if (front_right || back_right) return std::nullopt;
+  // Flatter than a radius of 1 km is flat.
+  constexpr double kFlat = 1e-6;
+  const auto mean = [](const cad_import::PrincipalCurvatures& k) { return 0.5 * (k.k1 + k.k2); };
+  if (mean(geometry.front_curvature) < -kFlat && mean(geometry.back_curvature) > kFlat)
+    return "the front is concave and the back convex";
+  return std::nullopt;
+}
+
+cad_import::LensGeometry turn_normals_outwards(std::vector<Face>& front, std::vector<Face>& back,
+                                               const std::string& file) {
+  const cad_import::LensGeometry geometry = cad_import::measure_lens(front, back, file);
+  if (glm::dot(area_vector(front), geometry.axis) < 0) turn_over(front);
+  if (glm::dot(area_vector(back), geometry.axis) > 0) turn_over(back);
+  return geometry;
+}
+
+std::optional<glm::dvec3> lens_axis(const optics::Optic& lens) {
+  const glm::dvec3 along = mean_normal(lens.mesh) - mean_normal(lens.back.mesh);
+  if (glm::length(along) == 0) return std::nullopt;
+  return glm::normalize(along);
 }
 
 std::optional<LensThickness> lens_thickness(const optics::Optic& lens) {
-  const glm::dvec3 along = mean_normal(lens.mesh) - mean_normal(lens.back.mesh);
-  if (glm::length(along) == 0) return std::nullopt;
-  const glm::dvec3 axis = glm::normalize(along);
+  const auto direction = lens_axis(lens);
+  if (!direction) return std::nullopt;
+  const glm::dvec3 axis = *direction;
   double most = 0;
   for (const auto& vertex : lens.mesh.vertices)
     for (const auto& other : {lens.mesh.vertices.front(), lens.back.mesh.vertices.front()})

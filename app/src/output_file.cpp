@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "app/src/commands.h"
 #include "cad_import/error.h"
 #include "render/image_io.h"
 
@@ -76,7 +77,8 @@ void check_picture_path(const std::filesystem::path& file) {
   if (file == "-") return;
   const std::string suffix = lower_suffix(file);
   if (suffix != ".png" && suffix != ".exr")
-    throw Error(file.string(), "", "pictures are written as .png or .exr", "choose one of these suffixes");
+    throw UsageError("-o '" + file.string() + "': pictures are written as .png or .exr",
+                     "choose one of these suffixes");
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))

@@ -20,7 +20,8 @@ void write_renamed(const std::filesystem::path& file,
 /// Writes a picture by its suffix, or as PNG to standard output for "-".
 void write_picture(const render::Frame& frame, const std::filesystem::path& file, bool with_geometry);
 
-/// Throws catoptra::Error where a picture could not be written to `file`: before the work, not after it.
+/// Throws where a picture could not be written to `file`, before the work, not after it: UsageError for a
+/// suffix that is none of pictures, catoptra::Error for a folder that is not there.
 void check_picture_path(const std::filesystem::path& file);
 
 /// Makes the folder and its parents. Throws catoptra::Error.

@@ -96,7 +96,7 @@ auto told_at(const TomlTable& table, std::string_view key, Step step) {
     return step();
   } catch (const Error& error) {
     table.fail(key,
-               (error.entity().empty() ? "" : error.entity() + " of ") + error.file() + " " + error.reason(),
+               error.file() + ": " + (error.entity().empty() ? "" : error.entity() + ": ") + error.reason(),
                error.hint());
   }
 }
@@ -108,6 +108,9 @@ std::vector<LensFile> read_one_file(const TomlTable& table, const SceneContext& 
   const char* at = !keys.front_faces.empty()  ? "front_faces"
                    : !keys.back_faces.empty() ? "back_faces"
                                               : "file";
+  if (keys.front_faces.empty() && keys.back_faces.empty() && is_mirror_glass(model))
+    table.fail("file", "'" + model.file + "' is a mirror glass: its faces are called Glass, Back and Edge",
+               "give it as [[mirror]], or name both sides with front_faces and back_faces");
   LensFaceIndices sides =
       told_at(table, at, [&] { return lens_faces_of(model, keys.front_faces, keys.back_faces); });
   lens.faces = faces_at(model, sides.front);
@@ -183,13 +186,18 @@ void read_lens(const TomlTable& table, const SceneContext& context, SceneFile& r
   const auto files =
       one_file ? read_one_file(table, context, keys, lens) : read_two_files(table, context, keys, lens);
   const std::string_view front = one_file ? "file" : "front", back = one_file ? "file" : "back";
-  told_at(table, back, [&] { turn_normals_outwards(lens.faces, lens.back.faces, files.back().model.file); });
+  const auto geometry = told_at(table, back, [&] {
+    return turn_normals_outwards(lens.faces, lens.back.faces, files.back().model.file);
+  });
   mesh_side(table, front, lens.faces, keys, lens.mesh, result.scene.warnings);
   mesh_side(table, back, lens.back.faces, keys, lens.back.mesh, result.scene.warnings);
   check_thickness(table, back, lens);
 
   const auto path = read_path(table, context, front);
   lens.name = keys.name.value_or(default_optic_name(result.scene.optics, path));
+  if (const auto reason = exchanged_sides(lens.faces, lens.back.faces, geometry))
+    result.scene.warnings.push_back("lens '" + lens.name + "': front and back look exchanged: " + *reason +
+                                    " (no picture depends on it, measurements do)");
   for (const LensFile& file : files) {
     add_remaining_faces(file.model, file.optical, lens.rim_color, result.scene);
     result.scene.warnings.insert(result.scene.warnings.end(), file.model.warnings.begin(),

@@ -4,6 +4,9 @@
 #include <tbb/global_control.h>
 
 #include <optional>
+#include <utility>
+
+#include "app/src/optic_view.h"
 
 namespace catoptra::app {
 
@@ -32,6 +35,8 @@ Session::Session(const DrawingOptions& options, const CommonOptions& common)
   file = read_scene(options.scene, reading);
   progress.clear();
   if (size) file.scene.camera.resolution = *size;
+  for (std::string& warning : optic_view_warnings(file.scene))
+    file.scene.warnings.push_back(std::move(warning));
   for (const std::string& warning : file.scene.warnings) spdlog::warn(warning);
   frame.width = file.scene.camera.resolution.x;
   frame.height = file.scene.camera.resolution.y;

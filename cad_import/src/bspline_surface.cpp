@@ -72,7 +72,7 @@ SpanAxis::SpanAxis(std::span<const double> knots, int degree, double period) : p
 
 // Without branches that depend on t: at random parameters the processor would guess every other one wrong,
 // which costs as much as the polynomials.
-SpanAxis::Position SpanAxis::locate(double t) const {
+[[gnu::always_inline]] inline SpanAxis::Position SpanAxis::locate_inline(double t) const {
   if (period_ > 0 && !(t >= begin() && t <= end())) t -= period_ * std::floor((t - begin()) / period_);
   const double at = std::min(std::max(0.0, (t - begin()) * bucket_rate_), double(bucket_.size() - 1));
   int s = bucket_[std::size_t(std::int32_t(at))];
@@ -80,6 +80,10 @@ SpanAxis::Position SpanAxis::locate(double t) const {
   while (t >= spans_[s].upper) ++s;  // only where a span is far shorter than the others
   const Span& span = spans_[s];
   return {s, (t - span.middle) * span.rate, span.rate};
+}
+
+SpanAxis::Position SpanAxis::locate(double t) const {
+  return locate_inline(t);
 }
 
 BSplineSurface::BSplineSurface(const BSplineData& data, double orientation, SurfaceKind kind)
@@ -209,7 +213,7 @@ template <int Order>
 // (Piegl and Tiller, eq. 4.20).
 template <int Order>
 [[gnu::always_inline]] inline BSplineSurface::Homogeneous BSplineSurface::evaluate(double u, double v) const {
-  const SpanAxis::Position pu = axis_u_.locate(u), pv = axis_v_.locate(v);
+  const SpanAxis::Position pu = axis_u_.locate_inline(u), pv = axis_v_.locate_inline(v);
   const glm::dvec4* block = coefficients_.data() +
                             (std::size_t(pu.span) * axis_v_.span_count() + pv.span) * coefficients_per_span();
   Homogeneous h = evaluate_block<Order>(block, pu.local, pv.local);

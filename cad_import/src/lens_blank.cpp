@@ -157,7 +157,8 @@ LensShape::LensShape(const LensBlank& blank) {
   impl->check_crossing();
   const auto radius = [](double curvature) { return curvature == 0 ? 0 : 1 / curvature; };
   const Thicknesses rim = impl->rim();
-  impl->report = {curve,
+  impl->report = {impl->back.form,
+                  curve,
                   radius(impl->front.curvature()),
                   radius(-impl->back.c1),
                   radius(-impl->back.c2),

@@ -77,15 +77,48 @@ LensBack solve_back(const LensBlank& blank, double front_curvature, double thick
   back.vertex_mm = {0, 0, -thickness_mm};
   back.c1 = shape.c1;
   back.c2 = shape.c2;
+  back.form = back_form(blank);
   back.conic = blank.back_conic;
   const double cosine = std::cos(shape.angle), sine = std::sin(shape.angle);
   back.frame = glm::dmat3(cosine * tilt[0] + sine * tilt[1], cosine * tilt[1] - sine * tilt[0], tilt[2]);
   return back;
 }
 
+LensBackForm back_form(const LensBlank& blank) {
+  return blank.back.value_or(blank.back_conic == 0 ? LensBackForm::toric : LensBackForm::biconic);
+}
+
+/// Where the first slope becomes vertical. For a torus that is the radius of its steeper section too: on the
+/// cylinder of that radius the ring through (x, y) is still as wide as x, in either formation.
 double LensBack::limit_mm() const {
   const double steepest = std::max(std::abs(c1), std::abs(c2)) * std::sqrt(std::max(0.0, 1 + conic));
   return steepest > 0 ? 1 / steepest : std::numeric_limits<double>::infinity();
+}
+
+/// The circle of the steeper section, of height s above its own coordinate, turned about an axis parallel to
+/// that coordinate at the flatter section's centre: rings of radius (1 - c s) / c around it, hence
+///   z = s + c x^2 / (q + sqrt(q^2 - c^2 x^2)),  q = 1 - c s,  c and x along the flatter section.
+std::optional<LensBack::Sag> LensBack::toric_sag(double x, double y) const {
+  const bool first_is_circle = std::abs(c1) > std::abs(c2);
+  const double circle = first_is_circle ? c1 : c2, ring = first_is_circle ? c2 : c1;
+  const double along = first_is_circle ? x : y, across = first_is_circle ? y : x;
+  const double upright = std::sqrt(1 - circle * circle * along * along);
+  if (!(upright > 0)) return std::nullopt;
+  const double s = circle * along * along / (1 + upright), q = 1 - ring * s;
+  const double root = std::sqrt(q * q - ring * ring * across * across);
+  if (!(q > 0 && root > 0)) return std::nullopt;
+  const double z = s + ring * across * across / (q + root);
+  const double slope_along = circle * along / upright * q / root, slope_across = ring * across / root;
+  return first_is_circle ? Sag{z, slope_along, slope_across} : Sag{z, slope_across, slope_along};
+}
+
+std::optional<LensBack::Sag> LensBack::biconic_sag(double x, double y) const {
+  const double curved = c1 * x * x + c2 * y * y;
+  const double root = std::sqrt(1 - (1 + conic) * (c1 * c1 * x * x + c2 * c2 * y * y));
+  if (!(root > 0)) return std::nullopt;
+  const double turn = (1 + conic) * curved / (root * (1 + root) * (1 + root));
+  return Sag{curved / (1 + root), 2 * c1 * x / (1 + root) + turn * c1 * c1 * x,
+             2 * c2 * y / (1 + root) + turn * c2 * c2 * y};
 }
 
 double LensBack::z_mm(double x_mm, double y_mm) const {
@@ -94,14 +127,10 @@ double LensBack::z_mm(double x_mm, double y_mm) const {
   // frame is not tilted.
   for (int iteration = 0; iteration < 50; ++iteration) {
     const glm::dvec3 p = (glm::dvec3(x_mm, y_mm, z) - vertex_mm) * frame;
-    const double curved = c1 * p.x * p.x + c2 * p.y * p.y;
-    const double root = std::sqrt(1 - (1 + conic) * (c1 * c1 * p.x * p.x + c2 * c2 * p.y * p.y));
-    if (!(root > 0)) break;
-    const double miss = p.z - curved / (1 + root);
-    const double turn = (1 + conic) * curved / (root * (1 + root) * (1 + root));
-    const double slope_x = 2 * c1 * p.x / (1 + root) + turn * c1 * c1 * p.x;
-    const double slope_y = 2 * c2 * p.y / (1 + root) + turn * c2 * c2 * p.y;
-    const double rate = frame[2].z - slope_x * frame[0].z - slope_y * frame[1].z;
+    const auto sag = form == LensBackForm::toric ? toric_sag(p.x, p.y) : biconic_sag(p.x, p.y);
+    if (!sag) break;
+    const double miss = p.z - sag->z;
+    const double rate = frame[2].z - sag->slope_x * frame[0].z - sag->slope_y * frame[1].z;
     if (!(rate > 0)) break;
     z -= miss / rate;
     if (std::abs(miss) < 1e-13 * (1 + std::abs(z))) return z;

@@ -64,6 +64,12 @@ void check_front(const LensBlank& blank) {
     if (!std::isfinite(a)) refuse_lens("asphere", "coefficients must be finite numbers");
 }
 
+void check_back(const LensBlank& blank) {
+  if (blank.back_conic != 0 && back_form(blank) == LensBackForm::toric)
+    refuse_lens("back conic", number_text(blank.back_conic) + " needs a biconic back",
+                "the sections of a torus are circles");
+}
+
 void check_size(const LensBlank& blank) {
   check_above_zero("diameter", blank.diameter_mm);
   if (blank.center_thickness_mm && blank.edge_thickness_mm)
@@ -97,6 +103,7 @@ void check_lens_blank(const LensBlank& blank) {
   check_finite(blank);
   check_prescription(blank);
   check_front(blank);
+  check_back(blank);
   check_size(blank);
 }
 

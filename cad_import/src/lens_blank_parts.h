@@ -4,6 +4,7 @@
 #include <glm/mat2x2.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,12 +56,24 @@ struct LensBack {
   glm::dvec3 vertex_mm{0};
   glm::dmat3 frame{1};
   double c1 = 0, c2 = 0;  // 1/mm, positive where the section opens towards the front
-  double conic = 0;
+  LensBackForm form = LensBackForm::toric;
+  double conic = 0;  // biconic only
 
   /// Height z in the lens's frame. Within limit_mm() of the axis.
   [[nodiscard]] double z_mm(double x_mm, double y_mm) const;
   [[nodiscard]] double limit_mm() const;
+
+ private:
+  struct Sag {
+    double z, slope_x, slope_y;
+  };
+  /// Above (x, y) of the own frame; nullopt where the surface does not reach.
+  [[nodiscard]] std::optional<Sag> toric_sag(double x, double y) const;
+  [[nodiscard]] std::optional<Sag> biconic_sag(double x, double y) const;
 };
+
+/// The form that `blank` asks for or needs.
+[[nodiscard]] LensBackForm back_form(const LensBlank& blank);
 
 /// The back that gives `blank` its prescription behind a front of curvature `front_curvature` at the vertex
 /// and `thickness_mm` of material.

@@ -43,12 +43,26 @@ struct Axis {
   glm::dvec3 direction{0, 0, 1}, point{0};
 };
 
-Axis find_axis(const LensSide& front, const LensSide& back, const std::string& file) {
+[[noreturn]] void refuse_sides(const std::string& file) {
+  throw Error(file, "lens", "front and back do not lie behind one another",
+              "name the faces of both sides; catoptra info lists them");
+}
+
+/// From the back to the front, roughly. The borders of both may be one and the same: a knife's edge.
+glm::dvec3 from_back_to_front(const LensSide& front, const LensSide& back) {
   const glm::dvec3 apart = front.middle() - back.middle();
+  if (glm::length(apart) > 1e-6 * (1 + front.extent_mm())) return apart;
+  return front.inner_point() - back.inner_point();
+}
+
+Axis find_axis(const LensSide& front, const LensSide& back, const std::string& file) {
+  const glm::dvec3 apart = from_back_to_front(front, back);
+  if (!(glm::length(apart) > 1e-9 * (1 + front.extent_mm())))
+    throw Error(file, "lens", "front and back coincide: there is no glass between them",
+                "give two different surfaces");
   const auto along = [&](const glm::dvec3& area) { return glm::dot(area, apart) < 0 ? -area : area; };
   const glm::dvec3 first = along(front.area_vector()), sum = first + along(back.area_vector());
-  if (!(glm::length(first) > 0 && glm::length(sum) > 0 && glm::length(apart) > 0))
-    throw Error(file, "lens", "front and back do not lie behind one another");
+  if (!(glm::length(first) > 0 && glm::length(sum) > 0)) refuse_sides(file);
   const auto drawn = coordinate_axis(glm::normalize(first), 2);
   Axis axis{drawn.value_or(glm::normalize(sum)), front.middle()};
   const auto at_front = front.on_line(axis.point, axis.direction);
@@ -187,7 +201,8 @@ LensFaces from_given(const CadModel& model, std::vector<int> front, std::vector<
   if (back.empty()) back = facing(model, front);
   for (const int face : front)
     if (std::binary_search(back.begin(), back.end(), face))
-      throw Error(model.file, "face " + std::to_string(face), "is on the front and on the back");
+      throw Error(model.file, "face " + std::to_string(face), "is on the front and on the back",
+                  "name different faces for both sides");
   LensFaces lens = measured(model, std::move(front), std::move(back));
   add_rim(model, lens);
   return lens;
@@ -205,7 +220,7 @@ LensGeometry measure_lens(std::span<const Face> front, std::span<const Face> bac
   lens.axis = axis.direction;
   const auto at_front = front_side.on_line(through, lens.axis),
              at_back = back_side.on_line(through, lens.axis);
-  if (!at_front || !at_back) throw Error(file, "lens", "front and back do not lie behind one another");
+  if (!at_front || !at_back) refuse_sides(file);
   lens.front_vertex_mm = at_front->position;
   lens.back_vertex_mm = at_back->position;
   lens.center_thickness_mm = glm::dot(at_front->position - at_back->position, lens.axis);

@@ -21,6 +21,67 @@ std::vector<glm::dvec3> points_along(const EdgeUse& use) {
   return points;
 }
 
+/// On a border of the parameters (a sphere's pole, a seam) the trimming may say either: a millionth of the
+/// way to the middle it is sure.
+glm::dvec2 drawn_in(const glm::dvec2& uv, const ParameterDomain& d) {
+  constexpr double kShare = 1e-6;
+  const glm::dvec2 middle(0.5 * (d.u_min + d.u_max), 0.5 * (d.v_min + d.v_max));
+  return uv + kShare * (middle - uv);
+}
+
+/// The nearest to `line` of the points around a pole, which Newton's steps cannot leave by themselves.
+template <typename OffLine>
+glm::dvec2 beside_pole(const ExactSurface& surface, const glm::dvec2& pole, bool along_u,
+                       const OffLine& off_line) {
+  constexpr int kAround = 24;
+  constexpr double kShare = 1e-3;
+  const ParameterDomain d = surface.domain();
+  glm::dvec2 best = pole;
+  double nearest = 1e300;
+  for (int k = 0; k < kAround; ++k) {
+    glm::dvec2 uv = pole + kShare * (glm::dvec2(0.5 * (d.u_min + d.u_max), 0.5 * (d.v_min + d.v_max)) - pole);
+    if (along_u)
+      uv.x = d.u_min + (d.u_max - d.u_min) * k / kAround;
+    else
+      uv.y = d.v_min + (d.v_max - d.v_min) * k / kAround;
+    if (const double distance = glm::length(off_line(surface.point(uv.x, uv.y))); distance < nearest) {
+      nearest = distance;
+      best = uv;
+    }
+  }
+  return best;
+}
+
+/// Gauss-Newton on the distance of `off_line` from zero, down to `precision_mm`.
+template <typename OffLine>
+std::optional<SidePoint> find_on_face(const Face& face, const glm::dvec2& start, const glm::dvec3& axis,
+                                      double precision_mm, const OffLine& off_line) {
+  SidePoint at{&face, start, {0, 0, 0}};
+  bool left_pole = false;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const SurfaceFrame f = face.surface->d1(at.uv.x, at.uv.y);
+    at.position = f.point;
+    const glm::dvec3 miss = off_line(f.point);
+    if (glm::length(miss) < precision_mm) {
+      if (face.trim->contains(at.uv.x, at.uv.y)) return at;
+      at.uv = drawn_in(at.uv, face.surface->domain());
+      return face.trim->contains(at.uv.x, at.uv.y) ? std::optional(at) : std::nullopt;
+    }
+    const glm::dvec3 du = f.du - glm::dot(f.du, axis) * axis, dv = f.dv - glm::dot(f.dv, axis) * axis;
+    const double a = glm::dot(du, du), b = glm::dot(du, dv), c = glm::dot(dv, dv);
+    const double determinant = a * c - b * b;
+    if (!(determinant > 1e-14 * a * c)) {
+      if (left_pole) return std::nullopt;
+      left_pole = true;
+      at.uv = beside_pole(*face.surface, at.uv, a < c, off_line);
+      continue;
+    }
+    const double p = glm::dot(du, miss), q = glm::dot(dv, miss);
+    at.uv -= glm::dvec2(c * p - b * q, a * q - b * p) / determinant;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 glm::dvec3 area_vector(const Face& face) {
@@ -57,37 +118,46 @@ LensSide::LensSide(std::span<const Face> faces) : faces_(faces) {
   for (const glm::dvec3& p : boundary_) extent_ = std::max(extent_, glm::distance(p, middle_));
 }
 
+glm::dvec3 LensSide::inner_point() const {
+  constexpr int kSteps = 12;
+  glm::dvec3 sum{0};
+  int points = 0;
+  for (const Face& face : faces_) {
+    const ParameterDomain d = face.surface->domain();
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; j <= kSteps; ++j) {
+        const double u = d.u_min + (d.u_max - d.u_min) * i / kSteps;
+        const double v = d.v_min + (d.v_max - d.v_min) * j / kSteps;
+        if (!face.trim->contains(u, v)) continue;
+        sum += face.surface->point(u, v);
+        ++points;
+      }
+  }
+  return points > 0 ? sum / double(points) : middle_;
+}
+
 std::optional<SidePoint> LensSide::on_face(const Face& face, const glm::dvec3& point,
                                            const glm::dvec3& axis) const {
   const auto off_line = [&](const glm::dvec3& p) { return p - point - glm::dot(p - point, axis) * axis; };
   const ParameterDomain d = face.surface->domain();
   constexpr int kStarts = 12;
-  SidePoint best{&face, {0, 0}, {0, 0, 0}};
-  double nearest = 1e300;
+  // The whole surface may meet the line twice, as a ball does: points of the face go first.
+  struct Start {
+    glm::dvec2 uv{0};
+    double distance = 1e300;
+  } on_the_face, anywhere;
   for (int i = 0; i <= kStarts; ++i)
     for (int j = 0; j <= kStarts; ++j) {
       const glm::dvec2 uv(d.u_min + (d.u_max - d.u_min) * i / kStarts,
                           d.v_min + (d.v_max - d.v_min) * j / kStarts);
-      const glm::dvec3 p = face.surface->point(uv.x, uv.y);
-      if (const double distance = glm::length(off_line(p)); distance < nearest) {
-        nearest = distance;
-        best = {&face, uv, p};
-      }
+      const double distance = glm::length(off_line(face.surface->point(uv.x, uv.y)));
+      if (distance < anywhere.distance) anywhere = {uv, distance};
+      if (distance < on_the_face.distance && face.trim->contains(uv.x, uv.y)) on_the_face = {uv, distance};
     }
-  // Gauss-Newton on the distance from the line.
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    const SurfaceFrame f = face.surface->d1(best.uv.x, best.uv.y);
-    best.position = f.point;
-    const glm::dvec3 miss = off_line(f.point);
-    if (glm::length(miss) < 1e-10 * (1 + extent_))
-      return face.trim->contains(best.uv.x, best.uv.y) ? std::optional(best) : std::nullopt;
-    const glm::dvec3 du = f.du - glm::dot(f.du, axis) * axis, dv = f.dv - glm::dot(f.dv, axis) * axis;
-    const double a = glm::dot(du, du), b = glm::dot(du, dv), c = glm::dot(dv, dv);
-    const double determinant = a * c - b * b;
-    if (!(determinant > 1e-14 * a * c)) return std::nullopt;
-    const double p = glm::dot(du, miss), q = glm::dot(dv, miss);
-    best.uv -= glm::dvec2(c * p - b * q, a * q - b * p) / determinant;
-  }
+  for (const Start& start : {on_the_face, anywhere})
+    if (start.distance < 1e300)
+      if (const auto found = find_on_face(face, start.uv, axis, 1e-10 * (1 + extent_), off_line))
+        return found;
   return std::nullopt;
 }
 

@@ -8,12 +8,9 @@
 #include <vector>
 
 #include "cad_import/cad_model.h"
+#include "cad_import/lens_faces.h"
 
 namespace catoptra::cad_import {
-
-/// Integral of the outward unit normal over a face, mm^2, by Stokes' theorem half the integral of r x dr
-/// along its boundary; the sides of seams cancel.
-[[nodiscard]] glm::dvec3 area_vector(const Face& face);
 
 /// A point of a side.
 struct SidePoint {
@@ -29,6 +26,8 @@ class LensSide {
 
   [[nodiscard]] const glm::dvec3& area_vector() const { return area_vector_; }
   [[nodiscard]] const glm::dvec3& middle() const { return middle_; }  // of the boundary
+  /// Mean of points spread over the faces, by parameter.
+  [[nodiscard]] glm::dvec3 inner_point() const;
   [[nodiscard]] const std::vector<glm::dvec3>& boundary() const { return boundary_; }
   [[nodiscard]] double extent_mm() const { return extent_; }  // largest distance of boundary and middle
 

@@ -6,6 +6,7 @@
 
 #include "cad_import/error.h"
 #include "optics/refraction.h"
+#include "optics/src/lens_side_start.h"
 
 namespace catoptra::optics {
 namespace {
@@ -49,25 +50,38 @@ LensSide side_towards(const Optic& lens, const glm::dvec3& eye_mm) {
 }
 
 struct LensTracer::Impl {
-  const Optic& lens;
-  RayScene front, back;
+  // One side, and the two ways to find where a ray meets it.
+  struct Side {
+    LensSideView view;
+    LensSideStart start;
+    RayScene scene;
 
-  explicit Impl(const Optic& optic) : lens(optic) {
-    for (const LensSide side : {LensSide::front, LensSide::back}) {
-      const LensSideView view = side_of(lens, side);
-      if (view.faces.empty() || view.mesh->triangles.empty())
-        throw Error("", lens.name, side == LensSide::front ? "has no front surface" : "has no back surface",
-                    "name the faces of both sides");
-      RayScene& scene = side == LensSide::front ? front : back;
+    explicit Side(const LensSideView& of) : view(of), start(of.faces, *of.mesh) {
       scene.add_optic(*view.mesh);
       scene.commit();
     }
+
+    std::optional<ExactHit> hit(const Ray& ray) const {
+      std::optional<ExactHit> hit = start.hit(ray);
+      if (!hit) hit = exact_hit(view.faces, *view.mesh, ray, scene.intersect(ray));
+      return hit;
+    }
+  };
+  Side front, back;
+
+  explicit Impl(const Optic& lens)
+      : front(checked(lens, LensSide::front)), back(checked(lens, LensSide::back)) {}
+
+  static LensSideView checked(const Optic& lens, LensSide side) {
+    const LensSideView view = side_of(lens, side);
+    if (view.faces.empty() || view.mesh->triangles.empty())
+      throw Error("", lens.name, side == LensSide::front ? "has no front surface" : "has no back surface",
+                  "name the faces of both sides");
+    return view;
   }
 
   std::optional<ExactHit> hit(LensSide side, const Ray& ray) const {
-    const RayScene& scene = side == LensSide::front ? front : back;
-    const LensSideView view = side_of(lens, side);
-    return exact_hit(view.faces, *view.mesh, ray, scene.intersect(ray));
+    return (side == LensSide::front ? front : back).hit(ray);
   }
 };
 

@@ -23,7 +23,7 @@ std::optional<glm::dvec3> refract(const glm::dvec3& d, const glm::dvec3& n, doub
   const double cos_i = -glm::dot(d, n);
   const double cos2_t = 1 - eta * eta * (1 - cos_i * cos_i);
   if (cos2_t < 0) return std::nullopt;
-  return glm::normalize(eta * d + (eta * cos_i - std::sqrt(cos2_t)) * n);
+  return eta * d + (eta * cos_i - std::sqrt(cos2_t)) * n;  // as long as d and n are, to rounding
 }
 
 std::optional<double> critical_angle(double n_from, double n_to) {

@@ -40,19 +40,6 @@ struct PatchRays {
   const double* c;
 };
 
-struct Bend {
-  double xx, xy, yy;
-};
-
-/// Second derivatives of a patch's height: a level of detail needs no more than their leading terms, up to
-/// cubic ones.
-[[gnu::always_inline]] inline Bend patch_bend(const double* c, double x, double y) {
-  return {
-      2 * c[2] + x * (6 * c[3] + x * (12 * c[4])) + y * (2 * c[8] + x * (6 * c[9]) + y * (2 * c[13])),
-      c[7] + x * (2 * c[8] + x * (3 * c[9])) + y * (2 * c[12] + x * (4 * c[13]) + y * (3 * c[16])),
-      2 * c[11] + x * (2 * c[12] + x * (2 * c[13])) + y * (6 * c[15] + x * (6 * c[16]) + y * (12 * c[18]))};
-}
-
 struct alignas(64) PatchHits {
   MirrorRays rays;
   double miss[kLanes];  ///< mm between ray and surface before the last step
@@ -109,50 +96,12 @@ CATOPTRA_VECTOR_CLONES void hit_patch(const PatchRays& p, const MirrorLanes& lan
 
 }  // namespace
 
-ExactMirror::ExactMirror(const optics::Optic& optic) : optic_(optic) {
-  std::vector<std::vector<UvBox>> used(optic.faces.size());
-  for (const tessellate::OpticTriangle& t : optic.mesh.triangles)
-    used[std::size_t(t.face)].push_back(
-        {glm::min(glm::min(t.uv[0], t.uv[1]), t.uv[2]), glm::max(glm::max(t.uv[0], t.uv[1]), t.uv[2])});
-  for (std::size_t f = 0; f < optic.faces.size(); ++f) faces_.emplace_back(*optic.faces[f].surface, used[f]);
-  patch_of_triangle_.reserve(optic.mesh.triangles.size());
-  for (const tessellate::OpticTriangle& t : optic.mesh.triangles) {
-    const FacePatches& face = faces_[std::size_t(t.face)];
-    // Corners are taken a little inside: many lie on the cells' borders, and patches hold a little beyond
-    // them.
-    const glm::dvec2 middle = (t.uv[0] + t.uv[1] + t.uv[2]) / 3.0;
-    const auto patch = [&](std::size_t k) { return face.find(middle + 0.999 * (t.uv[k] - middle)); };
-    const int a = patch(0);
-    patch_of_triangle_.push_back(a == patch(1) && a == patch(2) ? &face.patches()[std::size_t(a)] : nullptr);
-  }
-}
-
-double ExactMirror::patched_share() const {
-  std::size_t valid = 0;
-  for (const tessellate::OpticTriangle& t : optic_.mesh.triangles) {
-    const FacePatches& face = faces_[std::size_t(t.face)];
-    valid += face.patches()[std::size_t(face.find((t.uv[0] + t.uv[1] + t.uv[2]) / 3.0))].valid;
-  }
-  return optic_.mesh.triangles.empty() ? 1 : double(valid) / double(optic_.mesh.triangles.size());
-}
-
-std::size_t ExactMirror::patch_count() const {
-  std::size_t count = 0;
-  for (const FacePatches& face : faces_) count += face.patches().size();
-  return count;
-}
-
-const SurfacePatch* ExactMirror::patch_of(const MirrorLanes& lanes, int lane) const {
-  if (const SurfacePatch* patch = patch_of_triangle_[lanes.triangle[lane]]) return patch;
-  const tessellate::OpticTriangle& t = optic_.mesh.triangles[lanes.triangle[lane]];
-  const FacePatches& face = faces_[std::size_t(t.face)];
-  const double u = lanes.u[lane], v = lanes.v[lane];
-  return &face.patches()[std::size_t(face.find((1 - u - v) * t.uv[0] + u * t.uv[1] + v * t.uv[2]))];
-}
+ExactMirror::ExactMirror(const optics::Optic& optic) : optic_(optic), patches_(optic.faces, optic.mesh) {}
 
 void ExactMirror::reflect(const glm::dvec3& eye_mm, MirrorLanes& lanes) const {
   const SurfacePatch* patch[kLanes];
-  for (int i = 0; i < kLanes; ++i) patch[i] = lanes.active[i] ? patch_of(lanes, i) : nullptr;
+  for (int i = 0; i < kLanes; ++i)
+    patch[i] = lanes.active[i] ? patches_.patch_of(lanes.triangle[i], lanes.u[i], lanes.v[i]) : nullptr;
   // Neighbouring pixels mostly share a patch: one pass of all lanes for each that occurs.
   bool chosen[kLanes], solved[kLanes];
   for (int first = 0; first < kLanes; ++first) {

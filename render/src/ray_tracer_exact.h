@@ -57,19 +57,17 @@ class ExactMirror {
   void reflect(const glm::dvec3& eye_mm, MirrorLanes& lanes) const;
 
   /// Share of the mesh's triangles whose middle lies on a valid patch, and the number of patches.
-  [[nodiscard]] double patched_share() const;
-  [[nodiscard]] std::size_t patch_count() const;
+  [[nodiscard]] double patched_share() const { return patches_.patched_share(); }
+  [[nodiscard]] std::size_t patch_count() const { return patches_.patch_count(); }
 
  private:
-  const SurfacePatch* patch_of(const MirrorLanes& lanes, int lane) const;
   void reflect_on_patch(const SurfacePatch& patch, const glm::dvec3& eye_mm,
                         const bool (&chosen)[MirrorLanes::kLanes], MirrorLanes& lanes,
                         bool (&solved)[MirrorLanes::kLanes]) const;
   void reflect_by_newton(const glm::dvec3& eye_mm, int lane, MirrorLanes& lanes) const;
 
   const optics::Optic& optic_;
-  std::vector<FacePatches> faces_;
-  std::vector<const SurfacePatch*> patch_of_triangle_;  ///< null: the triangle lies on several patches
+  MeshPatches patches_;
 };
 
 }  // namespace catoptra::render

@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "optics/lens_path.h"
 #include "optics/ray_scene.h"
 #include "optics/spectrum.h"
-#include "optics/vertex_hits.h"
 #include "render/scene.h"
+#include "render/src/ray_tracer_lens_side.h"
 #include "render/src/sampling.h"
 #include "render/src/shading.h"
 
@@ -25,18 +26,9 @@ struct LensLanes {
   // Hit on the mesh of the side entered: depth along the camera's axis, triangle, weights of its vertices.
   float depth[kLanes], u[kLanes], v[kLanes];
   std::uint32_t triangle[kLanes];
-  tessellate::OpticVertex entry[kLanes];                     ///< the exact point of entry
-  glm::dvec3 pixel_right_mm[kLanes], pixel_down_mm[kLanes];  ///< from there to the next pixels' rays
-  Float4 radiance[kLanes];                                   ///< sum over the wavelengths so far
-};
-
-/// How a pixel's beam leaves a lens: how the ray's origin and direction (by mm of way) change from this pixel
-/// to the next one.
-struct LensBeam {
-  glm::dvec3 direction{0}, right_mm{0}, down_mm{0}, right_per_mm{0}, down_per_mm{0};
-
-  /// Area across the ray after `way_mm`, mm^2. Source: Igehy 1999, 3.
-  [[nodiscard]] double area_mm2(double way_mm) const;
+  BeamLanes eye;            ///< the pixels' beams from the eye
+  MetLanes entry;           ///< the exact points of entry, the same at all wavelengths
+  Float4 radiance[kLanes];  ///< sum over the wavelengths so far
 };
 
 /// What becomes of the lanes at one wavelength.
@@ -44,8 +36,7 @@ struct RefractedLanes {
   static constexpr int kLanes = LensLanes::kLanes;
   optics::RayPacket16 rays;  ///< active where the light passes; unit directions
   bool passed[kLanes];
-  glm::dvec3 exit_mm[kLanes];
-  LensBeam beam[kLanes];
+  BeamLanes beams;  ///< from the exact points of exit on
   float transmittance[kLanes];
   ShadeLanes shade;
 };
@@ -59,7 +50,8 @@ class TracedLenses {
 
   void optic_changed(std::size_t index);
 
-  /// The side of each lens that is towards the eye; one entry per lens.
+  /// The side of each lens that is towards the eye; one entry per lens. Fits the patches of lenses that have
+  /// changed.
   [[nodiscard]] std::vector<optics::LensSide> entered_from(const glm::dvec3& eye_mm) const;
 
   /// Finds the lanes of `first` before whose hits a lens stands, and takes those hits away. `entered`: from
@@ -74,8 +66,7 @@ class TracedLenses {
   [[nodiscard]] std::size_t sample_count(const LensLanes& lanes) const;
 
   /// The rays behind the lenses at wavelength number `sample`; 0 is the one that geometry belongs to.
-  void refract(const glm::dvec3& eye_mm, const LensLanes& lanes, std::size_t sample,
-               RefractedLanes& out) const;
+  void refract(const LensLanes& lanes, std::size_t sample, RefractedLanes& out) const;
 
   /// Adds to `lanes.radiance` what the shaded rays of wavelength number `sample` show.
   void add_colors(std::size_t sample, const RefractedLanes& out, LensLanes& lanes) const;
@@ -84,11 +75,20 @@ class TracedLenses {
   struct Lens {
     std::size_t optic;  ///< index in Scene::optics
     optics::LensTracer tracer;
-    optics::RayScene front, back;  ///< each side's mesh, for finding entries
     std::vector<optics::SpectralSample> samples;
     std::vector<optics::LensIndices> indices;  ///< by sample
+    optics::RayScene front, back;              ///< each side's mesh, for finding entries and exits
+    // Fitted when a picture first asks: other modes do without.
+    std::once_flag fitted;
+    std::unique_ptr<LensSidePatches> front_patches, back_patches;
+
+    Lens(std::size_t index, const optics::Optic& lens);
+    void fit_patches(const optics::Optic& lens);
+    [[nodiscard]] const optics::RayScene& scene(optics::LensSide side) const;
+    [[nodiscard]] const LensSidePatches& patches(optics::LensSide side) const;
   };
-  [[nodiscard]] std::unique_ptr<Lens> make_lens(std::size_t optic) const;
+  void meet_exits(const Lens& lens, const LensLanes& lanes, std::size_t sample, const RefractedBeams& inside,
+                  MetLanes& exit, bool (&met)[LensLanes::kLanes]) const;
 
   const Scene& scene_;
   std::vector<std::unique_ptr<Lens>> lenses_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "optics/vertex_hits.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -76,9 +77,9 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
     const std::size_t at =
         std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
     const bool passed = out.passed[i];
-    const glm::dvec3 exit = out.exit_mm[i], direction = out.beam[i].direction;
+    const glm::dvec3 exit = out.beams.point.at(i), direction = out.beams.direction.at(i);
     const double way = optics::kSelfHitDistance_mm + double(out.rays.t_max[i]);
-    frame.position[at] = !passed ? glm::vec4(glm::vec3(lanes.entry[i].position_mm), 1)
+    frame.position[at] = !passed ? glm::vec4(glm::vec3(lanes.entry.point.at(i)), 1)
                          : out.rays.object[i] == optics::kNoHit
                              ? glm::vec4(glm::vec3(direction), 0)
                              : glm::vec4(glm::vec3(exit + way * direction), 1);
@@ -271,12 +272,13 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
   std::fill(std::begin(p.lens.radiance), std::end(p.lens.radiance), Float4{});
   for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
     RefractedLanes out;
-    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    lenses_.refract(p.lens, sample, out);
     rays_.intersect16(out.rays, optics::kEverything, true);
     copy_hits(out.rays, out.shade);
+    set_areas(out.beams, out.rays.t_max, out.shade.footprint);
     for (int i = 0; i < kLanes; ++i) {
       out.shade.active[i] = out.passed[i];
-      out.shade.footprint[i] = out.passed[i] ? float(out.beam[i].area_mm2(double(out.rays.t_max[i]))) : 0;
+      if (!out.passed[i]) out.shade.footprint[i] = 0;
       rays += out.passed[i] ? 1 : 0;
     }
     shading_.shade(out.shade);
@@ -355,7 +357,7 @@ std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view
   if (p.any_mirror) result.push_back(secondary_packet(p.second, scene_.optics.size() > 1));
   for (std::size_t sample = 0; sample < lenses_.sample_count(p.lens); ++sample) {
     RefractedLanes out;
-    lenses_.refract(view.camera.eye_mm, p.lens, sample, out);
+    lenses_.refract(p.lens, sample, out);
     result.push_back(secondary_packet(out.rays, true));
   }
   return result;

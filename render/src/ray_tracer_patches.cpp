@@ -240,4 +240,45 @@ int FacePatches::find(glm::dvec2 uv) const {
   return cell->patch;
 }
 
+MeshPatches::MeshPatches(std::span<const cad_import::Face> faces, const tessellate::OpticArrays& mesh)
+    : mesh_(mesh) {
+  std::vector<std::vector<UvBox>> used(faces.size());
+  for (const tessellate::OpticTriangle& t : mesh.triangles)
+    used[std::size_t(t.face)].push_back(
+        {glm::min(glm::min(t.uv[0], t.uv[1]), t.uv[2]), glm::max(glm::max(t.uv[0], t.uv[1]), t.uv[2])});
+  for (std::size_t f = 0; f < faces.size(); ++f) faces_.emplace_back(*faces[f].surface, used[f]);
+  patch_of_triangle_.reserve(mesh.triangles.size());
+  for (const tessellate::OpticTriangle& t : mesh.triangles) {
+    const FacePatches& face = faces_[std::size_t(t.face)];
+    // Corners are taken a little inside: many lie on the cells' borders, and patches hold a little beyond
+    // them.
+    const glm::dvec2 middle = (t.uv[0] + t.uv[1] + t.uv[2]) / 3.0;
+    const auto patch = [&](std::size_t k) { return face.find(middle + 0.999 * (t.uv[k] - middle)); };
+    const int a = patch(0);
+    patch_of_triangle_.push_back(a == patch(1) && a == patch(2) ? &face.patches()[std::size_t(a)] : nullptr);
+  }
+}
+
+double MeshPatches::patched_share() const {
+  std::size_t valid = 0;
+  for (const tessellate::OpticTriangle& t : mesh_.triangles) {
+    const FacePatches& face = faces_[std::size_t(t.face)];
+    valid += face.patches()[std::size_t(face.find((t.uv[0] + t.uv[1] + t.uv[2]) / 3.0))].valid;
+  }
+  return mesh_.triangles.empty() ? 1 : double(valid) / double(mesh_.triangles.size());
+}
+
+std::size_t MeshPatches::patch_count() const {
+  std::size_t count = 0;
+  for (const FacePatches& face : faces_) count += face.patches().size();
+  return count;
+}
+
+const SurfacePatch* MeshPatches::patch_of(std::uint32_t triangle, double u, double v) const {
+  if (const SurfacePatch* patch = patch_of_triangle_[triangle]) return patch;
+  const tessellate::OpticTriangle& t = mesh_.triangles[triangle];
+  const FacePatches& face = faces_[std::size_t(t.face)];
+  return &face.patches()[std::size_t(face.find((1 - u - v) * t.uv[0] + u * t.uv[1] + v * t.uv[2]))];
+}
+
 }  // namespace catoptra::render

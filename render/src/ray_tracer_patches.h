@@ -8,12 +8,15 @@
 // single precision cannot tell the polynomials from the surface.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
+#include "cad_import/cad_model.h"
 #include "cad_import/exact_surface.h"
+#include "tessellate/optic_arrays.h"
 
 namespace catoptra::render {
 
@@ -69,6 +72,19 @@ struct PatchHeight {
           p1 + y * (2 * p2 + y * (3 * c[15]))};
 }
 
+struct Bend {
+  double xx, xy, yy;
+};
+
+/// Second derivatives of a patch's height: a level of detail needs no more than their leading terms, up to
+/// cubic ones.
+[[gnu::always_inline]] inline Bend patch_bend(const double* c, double x, double y) {
+  return {
+      2 * c[2] + x * (6 * c[3] + x * (12 * c[4])) + y * (2 * c[8] + x * (6 * c[9]) + y * (2 * c[13])),
+      c[7] + x * (2 * c[8] + x * (3 * c[9])) + y * (2 * c[12] + x * (4 * c[13]) + y * (3 * c[16])),
+      2 * c[11] + x * (2 * c[12] + x * (2 * c[13])) + y * (6 * c[15] + x * (6 * c[16]) + y * (12 * c[18]))};
+}
+
 /// A rectangle of (u, v).
 struct UvBox {
   glm::dvec2 low{0}, high{0};
@@ -100,6 +116,26 @@ class FacePatches {
   cad_import::ParameterDomain domain_;
   std::vector<Cell> cells_;
   std::vector<SurfacePatch> patches_;
+};
+
+/// The patches of all faces of a mesh.
+class MeshPatches {
+ public:
+  /// `mesh` must outlive this and stay as it is.
+  MeshPatches(std::span<const cad_import::Face> faces, const tessellate::OpticArrays& mesh);
+
+  /// The patch under a hit on the mesh; `u` and `v`: weights of the triangle's second and third vertex. It
+  /// may be one that is not valid.
+  [[nodiscard]] const SurfacePatch* patch_of(std::uint32_t triangle, double u, double v) const;
+
+  /// Share of the mesh's triangles whose middle lies on a valid patch, and the number of patches.
+  [[nodiscard]] double patched_share() const;
+  [[nodiscard]] std::size_t patch_count() const;
+
+ private:
+  const tessellate::OpticArrays& mesh_;
+  std::vector<FacePatches> faces_;
+  std::vector<const SurfacePatch*> patch_of_triangle_;  ///< null: the triangle lies on several patches
 };
 
 }  // namespace catoptra::render

@@ -56,6 +56,19 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"lens", "make", "--sph", "-2"},
       {"lens", "make", "--index", "1.6", "--material", "CR-39", "-o", "l.step"},
       {"lens", "make", "--front", "cone", "-o", "l.step"},
+      {"render", "scene.toml", "-o", "x.jpg"},
+      {"render", "scene.toml", "-o", "x.png", "--reference-threshold", "nan"},
+      {"compare", "scene.toml", "-o", "out", "--max-error-arcmin", "-1"},
+      {"mirror", "make", "-o", "m.foo"},
+      {"mirror", "make", "--radius", "inf", "-o", "m.step"},
+      {"mirror", "make", "--width", "0", "-o", "m.step"},
+      {"mirror", "make", "--corner-radius", "-1", "-o", "m.step"},
+      {"mirror", "make", "--outline", "round", "-o", "m.step"},
+      {"lens", "make", "-o", "l.stl"},
+      {"lens", "make", "--sph", "nan", "-o", "l.step"},
+      {"lens", "make", "--asphere", "1e-8,inf", "-o", "l.step"},
+      {"lens", "make", "--back", "cylinder", "-o", "l.step"},
+      {"lens", "make", "--back", "toric", "--back-conic", "-1", "-o", "l.step"},
       {"batch", "run", "plan.toml"},
       {"completion", "csh"},
   };
@@ -75,6 +88,35 @@ TEST(CommandLine, WhatIsNotInThisVersionSaysSo) {
                     "not in this version"));
 }
 
+TEST(CommandLine, MisspeltWordsSuggestTheNearest) {
+  struct Slip {
+    std::vector<std::string> arguments;
+    std::string told;
+  };
+  const std::vector<Slip> slips{
+      {{"rendre", "s.toml"}, "unknown command 'rendre' (did you mean 'render'?; see catoptra --help)"},
+      {{"lens", "mak", "-o", "x.step"},
+       "unknown command 'mak' (did you mean 'make'?; see catoptra lens --help)"},
+      {{"frobnicate"}, "unknown command 'frobnicate' (known: info, render, compare, bench, lens, mirror"},
+      {{"render", "s.toml", "--outpt", "x.png"}, "unknown option '--outpt' (did you mean '--output'? see"},
+      {{"mirror", "make", "--outline", "round", "-o", "m.step"},
+       "did you mean 'rounded'? outlines: rect, rounded"},
+      {{"lens", "make", "--outline", "round", "-o", "l.step"}, "round lenses: --diameter D"},
+      {{"lens", "make", "--axis", "200", "-o", "l.step"}, "--axis: 200 is not between 0 and 180"},
+      {{"lens", "make", "--material", "CR-93", "-o", "l.step"}, "CR-39"},
+  };
+  for (const Slip& slip : slips) {
+    const CommandResult result = run_catoptra(slip.arguments);
+    EXPECT_EQ(result.code, 2) << result.errors;
+    EXPECT_TRUE(holds(result.errors, slip.told)) << result.errors;
+    EXPECT_EQ(lines_in(result.errors), 1u) << result.errors;
+  }
+}
+
+TEST(CommandLine, HelpSpeaksOfLensesToo) {
+  EXPECT_TRUE(holds(run_catoptra({"--help"}).output, "mirror or a spectacle lens"));
+}
+
 TEST(CommandLine, SceneErrorsNameFileLineAndKeyAndExitWith1) {
   const TemporaryFolder folder;
   const auto scene = folder.write("bad.toml", "[camera]\nfov = 3\n").string();
@@ -91,7 +133,7 @@ TEST(CommandLine, ResultsThatCannotBeWrittenAreErrors) {
   const TemporaryFolder folder;
   const auto mirror = write_test_mirror(folder, 400).string();
   EXPECT_EQ(run_catoptra({"mirror", "make", "-o", (folder / "no/folder/m.step").string()}).code, 1);
-  EXPECT_EQ(run_catoptra({"render", "scene.toml", "-o", (folder / "x.jpeg").string()}).code, 1);
+  EXPECT_EQ(run_catoptra({"render", "scene.toml", "-o", (folder / "no/folder/x.png").string()}).code, 1);
 }
 
 TEST(CommandLine, ManualPageNamesEveryCommandAndOption) {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/app/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace catoptra::test {
 

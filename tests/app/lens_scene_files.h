@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cad_import/lens_blank.h"
-#include "tests/app/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace catoptra::test {
 

@@ -77,6 +77,18 @@ void bench(int poles, std::size_t count) {
   if (passed == 0) std::puts("no ray passed");
 }
 
+// Lenses that the batch does not take, or that cost more per evaluation: LensTracer alone.
+void bench_single(const char* name, const optics::Optic& lens, std::size_t count) {
+  const auto rays = rows_of_rays(count);
+  const optics::LensTracer tracer(lens);
+  std::size_t passed = 0;
+  const double rate = millions_per_second(rays.size(), [&] {
+    for (const optics::Ray& ray : rays)
+      passed += tracer.trace(ray, optics::LensSide::back, {1.586, 1}).end == optics::LensPathEnd::passed;
+  });
+  std::printf("%s: LensTracer %.2f million paths/s and core (%zu passed)\n", name, rate, passed / 5);
+}
+
 // PVRR's share: the vertices of one side with their differentials (on all cores), and the two steps that
 // follow.
 void bench_vertices(int per_side) {
@@ -113,5 +125,7 @@ void bench_vertices(int per_side) {
 int main(int argc, char** argv) {
   const std::size_t count = std::size_t(argc > 1 ? std::max(1, std::atoi(argv[1])) : 1000) * 1000;
   for (const int poles : {8, 16, 40}) bench(poles, count);
+  bench_single("two spheres", test::spherical_lens(120, 90, 3, 70, 33), count / 4);
+  bench_single("degree 5, 16 x 16 poles", test::bspline_lens({.degree = 5}), count / 4);
   for (const int per_side : {23, 32}) bench_vertices(per_side);
 }

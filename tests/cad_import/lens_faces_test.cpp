@@ -11,6 +11,7 @@
 #include "cad_import/lens_blank.h"
 #include "tests/cad_import/lens_rays.h"
 #include "tests/cad_import/mesh_files.h"
+#include "tests/support/bad_lenses.h"
 
 namespace catoptra::cad_import {
 namespace {
@@ -113,6 +114,30 @@ TEST(RecogniseLens, OpenShellIsToldUnlessBothSidesAreGiven) {
   }
   const std::vector<int> front{0}, back{1};
   EXPECT_TRUE(recognise_lens(model, front, back).rim.empty());
+}
+
+/// Balls' caps on their poles, as CAD systems turn lenses: the surface is singular on the axis, and the ball
+/// behind a cap meets the axis twice.
+TEST(RecogniseLens, CapsOfBallsWithTheirPolesOnTheAxis) {
+  const ScratchFolder folder;
+  for (const double back_mm : {60.0, -100.0}) {
+    test::write_solid({80, 0}, {back_mm, -6}, folder / "caps.brep");
+    const LensFaces lens = recognise_lens(import_cad(folder / "caps.brep"));
+    EXPECT_EQ(lens.geometry.axis, glm::dvec3(0, 0, 1));
+    EXPECT_NEAR(lens.geometry.center_thickness_mm, 6, 1e-9);
+    EXPECT_NEAR(lens.geometry.front_curvature.k1, 1 / 80.0, 1e-7);
+    EXPECT_NEAR(lens.geometry.back_curvature.k1, -1 / back_mm, 1e-7);
+  }
+}
+
+/// Both sides end in the same edge.
+TEST(RecogniseLens, KnifeEdge) {
+  const ScratchFolder folder;
+  const double back_vertex = 2 * test::Cap{50, 0}.rim_mm();
+  test::write_solid({50, 0}, {-50, back_vertex}, folder / "knife.brep");
+  const LensFaces lens = recognise_lens(import_cad(folder / "knife.brep"));
+  EXPECT_NEAR(lens.geometry.center_thickness_mm, -back_vertex, 1e-9);
+  EXPECT_TRUE(lens.rim.empty());
 }
 
 TEST(RecogniseLens, BoxIsNoLens) {

@@ -2,26 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "cad_import/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace catoptra {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// A folder of its own for each test, gone afterwards.
 class ImageIo : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "catoptra_image_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static render::Frame frame(bool geometry) {
     render::Frame f;
     f.width = 7;
@@ -37,11 +28,9 @@ class ImageIo : public testing::Test {
     }
     return f;
   }
-  std::size_t files() const {
-    return std::size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
+  std::size_t files() const { return test::files_in(folder_.path()); }
 
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ImageIo, PngKeepsColorToHalfAStepOfItsEncoding) {

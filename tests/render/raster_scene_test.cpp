@@ -3,38 +3,27 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <glm/common.hpp>
 
 #include "cad_import/error.h"
 #include "render/comparison.h"
-#include "render/image_io.h"
 #include "render/renderer.h"
 #include "tests/render/raster_test_scene.h"
+#include "tests/support/temporary_image.h"
 
 namespace catoptra::render {
 namespace {
 
 using namespace catoptra::test;
 
-/// A file in the temporary directory that goes with the test.
-class TemporaryImage {
- public:
-  TemporaryImage(const std::string& name, int width, int height, auto&& color_at)
-      : path_(std::filesystem::temp_directory_path() / name) {
-    Frame frame;
-    frame.width = width;
-    frame.height = height;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) frame.color.push_back(glm::vec4(color_at(x, y), 1));
-    write_image(frame, path_);
-  }
-  ~TemporaryImage() { std::filesystem::remove(path_); }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
+Frame painted(int width, int height, auto&& color_at) {
+  Frame frame;
+  frame.width = width;
+  frame.height = height;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) frame.color.push_back(glm::vec4(color_at(x, y), 1));
+  return frame;
+}
 
 glm::vec3 checks(int x, int y) {
   return (x / 16 + y / 16) % 2 ? glm::vec3(0.9f, 0.2f, 0.1f) : glm::vec3(0.1f, 0.3f, 0.8f * float(y) / 256);
@@ -86,14 +75,14 @@ TEST(RasterScene, FarFromTheWorldsOriginNothingTrembles) {
 }
 
 TEST(RasterScene, TexturesHaveTheSameLevelOfDetail) {
-  const TemporaryImage image("catoptra_raster_texture.png", 256, 256, checks);
+  const TemporaryImage image("texture.png", painted(256, 256, checks));
   Scene scene = room();
   scene.surroundings[0] = {};
   add_quad(scene.surroundings[0], {4000, -900, 6000}, {-8000, 0, 0}, {0, 3400, 0}, glm::vec3(1), 0);
   add_quad(scene.surroundings[0], {-3000, -900, 6000}, {6000, 0, 0}, {0, 0, -6000}, glm::vec3(0.9f, 1, 0.8f),
            0);
   for (auto& st : scene.surroundings[0].texture_coordinates) st *= 4.0f;
-  scene.surroundings[0].textures.push_back({"checks", image.path(), {}});
+  scene.surroundings[0].textures.push_back({"checks", image.path().string(), {}});
   scene.camera = {{-700, 500, -500}, {200, -300, 3000}, {0, 1, 0}, 0.9, {320, 240}};
   // Trilinear weights have 8 bits in the raster passes; the level's formula differs in the last bits.
   EXPECT_GT(from_raytrace(scene).psnr_db, 40);
@@ -113,11 +102,12 @@ TEST(RasterScene, AlphaTestLeavesTheSameHoles) {
 }
 
 TEST(RasterScene, SkyLiesInItsTrueDirection) {
-  const TemporaryImage sky("catoptra_raster_sky.png", 64, 32, [](int x, int y) {
-    return glm::vec3(float(x) / 64, float(y) / 32, (x / 8 + y / 8) % 2 ? 0.8f : 0.1f);
-  });
+  const TemporaryImage sky("sky.png", painted(64, 32, [](int x, int y) {
+                             return glm::vec3(float(x) / 64, float(y) / 32,
+                                              (x / 8 + y / 8) % 2 ? 0.8f : 0.1f);
+                           }));
   Scene scene;
-  scene.environment.sky = sky.path();
+  scene.environment.sky = sky.path().string();
   for (const glm::dvec3& target :
        {glm::dvec3(0, 1, 0), glm::dvec3(1, 0.2, 0.3), glm::dvec3(-0.3, -1, -0.5)}) {
     scene.camera = {{0, 0, 0}, target, {0, 0, 1}, 1.2, {320, 240}};

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "render/image_io.h"
 #include "render/src/ray_tracer.h"
 #include "render/src/shading.h"
 #include "tests/support/analytic_optic.h"
+#include "tests/support/temporary_image.h"
 
 namespace catoptra::test {
 
@@ -79,26 +79,6 @@ inline void add_box(cad_import::TriangleMesh& mesh, glm::vec3 low, glm::vec3 siz
   add_quad(mesh, low, z, y, material);
   add_quad(mesh, low + x, y, z, material);
 }
-
-/// A PNG in the temporary folder, gone with the object.
-class TemporaryImage {
- public:
-  TemporaryImage(const std::string& name, const render::Frame& picture)
-      : path_(std::filesystem::temp_directory_path() /
-              ("catoptra_" + std::to_string(std::size_t(this)) + "_" + name)) {
-    render::write_image(picture, path_);
-  }
-  ~TemporaryImage() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  TemporaryImage(const TemporaryImage&) = delete;
-  TemporaryImage& operator=(const TemporaryImage&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// `size` x `size` pixels by `color(column, row)`.
 template <typename Color>
