@@ -6,7 +6,6 @@
 #include <TopoDS_TShape.hxx>
 #include <filesystem>
 #include <glm/vec3.hpp>
-#include <iosfwd>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -43,9 +42,9 @@ struct KernelDocument {
 [[nodiscard]] KernelDocument read_brep(const std::filesystem::path& file, ImportProgress& progress);
 [[nodiscard]] KernelDocument read_freecad(const std::filesystem::path& file, ImportProgress& progress);
 
-/// Reads one shape, as text or binary BREP, from a stream that can be rewound. Throws ImportError naming
-/// `file` and `entry` (empty: the file is the shape), and Cancelled.
-[[nodiscard]] TopoDS_Shape read_brep_shape(std::istream& in, const std::string& file,
+/// Reads one shape from text or binary BREP. Throws ImportError naming `file` and `entry` (empty: the file is
+/// the shape), and Cancelled.
+[[nodiscard]] TopoDS_Shape read_brep_shape(std::string bytes, const std::string& file,
                                            const std::string& entry, ImportProgress& progress);
 
 /// Splits a part into bodies: its solids, its shells outside solids, its loose faces together.

@@ -11,7 +11,6 @@
 #include <gp_GTrsf.hxx>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "cad_import/src/freecad_archive.h"
 #include "cad_import/src/freecad_document.h"
@@ -96,8 +95,7 @@ class Reader {
       throw ImportError(archive_.file(), entry, "is missing from the document",
                         "recompute and save it again in FreeCAD");
     if (bytes->empty()) return found->second;
-    std::istringstream in(std::move(*bytes));
-    found->second = read_brep_shape(in, archive_.file(), entry, progress_);
+    found->second = read_brep_shape(std::move(*bytes), archive_.file(), entry, progress_);
     return found->second;
   }
 
