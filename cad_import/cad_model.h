@@ -86,7 +86,7 @@ struct Body {
 /// An imported CAD file. Cheap to copy: surfaces are shared.
 struct CadModel {
   std::string file;
-  std::string format;  ///< "STEP", "IGES", "BREP"
+  std::string format;  ///< "STEP", "IGES", "BREP", "FreeCAD"
   std::string
       unit;  ///< the file's length unit as recognised: "mm", "m", "in", ...; "unknown" where it has none
   std::vector<Body> bodies;

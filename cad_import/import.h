@@ -16,7 +16,7 @@
 
 namespace catoptra::cad_import {
 
-enum class FileFormat { step, iges, brep, gltf, obj, stl, ply, unknown };
+enum class FileFormat { step, iges, brep, freecad, gltf, obj, stl, ply, unknown };
 
 /// True for the formats that hold exact surfaces.
 [[nodiscard]] bool is_cad(FileFormat format);
@@ -38,7 +38,8 @@ struct ImportOptions {
   const std::atomic<bool>* cancel = nullptr;  ///< set it from elsewhere: the import throws Cancelled
 };
 
-/// Reads STEP, IGES or BREP. Throws ImportError where the file cannot be read or has no face; Cancelled.
+/// Reads STEP, IGES, BREP or a FreeCAD document (.FCStd: what its 3D view shows). Throws ImportError where the
+/// file cannot be read or has no face; Cancelled.
 [[nodiscard]] CadModel import_cad(const std::filesystem::path& file, const ImportOptions& options = {});
 
 /// Reads glTF/GLB, OBJ, STL or PLY as triangles; a CAD file is imported and triangulated with the default deflection.

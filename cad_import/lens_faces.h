@@ -50,7 +50,7 @@ struct LensFaces {
 
 /// The lens that the solid `body` (index) is, for reports; nullopt where it does not look like one: no pair
 /// of facing sides that makes up most of what it shows along an axis, both sides planar, thicker than wide,
-/// or of more than 64 faces.
+/// of more than 64 faces, or a mirror glass by the names of its faces (those that write_mirror_blank gives).
 [[nodiscard]] std::optional<LensFaces> lens_in_body(const CadModel& model, int body);
 
 }  // namespace catoptra::cad_import

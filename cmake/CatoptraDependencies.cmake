@@ -3,6 +3,9 @@ find_package(glm REQUIRED)                                         # everybody  
 find_package(OpenCASCADE 7.6.3 REQUIRED)                           # cad_import      libocct-*-dev
 find_package(assimp 5.2 REQUIRED)                                  # cad_import      libassimp-dev
 find_package(PkgConfig REQUIRED)
+# By pkg-config: Debian's CMake file of libzip asks for its command line programs.
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip>=1.7)     # cad_import      libzip-dev
+find_package(pugixml 1.13 REQUIRED)                                # cad_import      libpugixml-dev
 pkg_check_modules(OPENMESH REQUIRED IMPORTED_TARGET openmesh)      # tessellate      libopenmesh-dev
 find_package(embree 3.13 REQUIRED)                                 # optics          libembree-dev
 find_package(yaml-cpp 0.7 REQUIRED)                                # optics          libyaml-cpp-dev

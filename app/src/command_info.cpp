@@ -60,7 +60,8 @@ Command add_info_command(CLI::App& root, CommonOptions& common) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* app = add_subcommand(root, common, "info",
                                  "Say what CAD and mesh files hold: bodies, faces, sizes, materials");
-  app->add_option("FILE", options->files, "STEP, IGES, BREP, glTF, OBJ, STL or PLY")->required();
+  app->add_option("FILE", options->files, "STEP, IGES, BREP, FreeCAD (.FCStd), glTF, OBJ, STL or PLY")
+      ->required();
   app->add_option("--unit", options->unit, "Length unit of the files' numbers, in place of their own")
       ->option_text("UNIT");
   app->add_flag("--json", options->json, "Print JSON");

@@ -87,7 +87,7 @@ FileEntry read_cad_entry(const TomlTable& table, const SceneContext& context, st
   FileEntry entry = read_file_entry(table, context, key);
   if (!cad_import::is_cad(cad_import::sniff_format(entry.path)))
     table.fail(key, "a lens needs exact surfaces, and '" + entry.path.string() + "' has none",
-               "give a STEP, IGES or BREP file");
+               "give a STEP, IGES, BREP or FreeCAD file");
   return entry;
 }
 

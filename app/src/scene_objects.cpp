@@ -76,7 +76,7 @@ void read_mirror(const TomlTable& table, const SceneContext& context, std::vecto
     if (name && other.name == *name) table.fail("name", "two optics are called '" + *name + "'");
   if (!cad_import::is_cad(cad_import::sniff_format(entry.path)))
     table.fail("file", "a mirror needs exact surfaces, and '" + entry.path.string() + "' has none",
-               "give a STEP, IGES or BREP file");
+               "give a STEP, IGES, BREP or FreeCAD file");
 
   MirrorFile& file = open_mirror_file(files, entry, context);
   if (color) file.color = *color;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cad_import/import.h"
+#include "cad_import/src/freecad_archive.h"
 
 namespace catoptra::cad_import {
 namespace {
@@ -66,9 +67,6 @@ void reject_look_alikes(const std::filesystem::path& file, const FileHead& head)
   if (text.substr(0, 2) == "\xFE\xFF" || text.substr(0, 2) == "\xFF\xFE")
     throw ImportError(file.string(), "", "is UTF-16 text, which no CAD or mesh format allows",
                       "save it as UTF-8");
-  const bool zip = text.substr(0, 4) == std::string_view("PK\x03\x04", 4);
-  if (zip && (text.substr(30, 12) == "Document.xml" || lower_case(file.extension().string()) == ".fcstd"))
-    throw ImportError(file.string(), "", "FreeCAD documents cannot be read yet", "export the bodies as STEP");
 }
 
 /// IGES 5.3, 2.2: lines of 80 columns whose column 73 is the section's letter; the first is the start
@@ -109,8 +107,16 @@ bool looks_like_obj(std::string_view text) {
   return vertex;
 }
 
-FileFormat format_of_content(const FileHead& head) {
+/// FreeCAD writes Document.xml first; other programs that pack a document again may not.
+bool looks_like_freecad(const std::filesystem::path& file, std::string_view text) {
+  if (text.substr(0, 4) != std::string_view("PK\x03\x04", 4)) return false;
+  return text.substr(std::min<std::size_t>(30, text.size()), 12) == "Document.xml" ||
+         holds_freecad_document(file);
+}
+
+FileFormat format_of_content(const std::filesystem::path& file, const FileHead& head) {
   const std::string_view all = head.bytes;
+  if (looks_like_freecad(file, all)) return FileFormat::freecad;
   const std::string_view text = skip_blank(all);
   const std::string_view opening = text.substr(0, 1024);
   if (opening.find("ISO-10303-21") != std::string_view::npos) return FileFormat::step;
@@ -129,18 +135,20 @@ FileFormat format_of_content(const FileHead& head) {
 }
 
 FileFormat format_of_suffix(const std::filesystem::path& file) {
-  constexpr std::array<std::pair<std::string_view, FileFormat>, 12> kSuffixes{{{".step", FileFormat::step},
-                                                                               {".stp", FileFormat::step},
-                                                                               {".p21", FileFormat::step},
-                                                                               {".iges", FileFormat::iges},
-                                                                               {".igs", FileFormat::iges},
-                                                                               {".brep", FileFormat::brep},
-                                                                               {".brp", FileFormat::brep},
-                                                                               {".gltf", FileFormat::gltf},
-                                                                               {".glb", FileFormat::gltf},
-                                                                               {".obj", FileFormat::obj},
-                                                                               {".stl", FileFormat::stl},
-                                                                               {".ply", FileFormat::ply}}};
+  constexpr std::array<std::pair<std::string_view, FileFormat>, 13> kSuffixes{
+      {{".step", FileFormat::step},
+       {".stp", FileFormat::step},
+       {".p21", FileFormat::step},
+       {".iges", FileFormat::iges},
+       {".igs", FileFormat::iges},
+       {".brep", FileFormat::brep},
+       {".brp", FileFormat::brep},
+       {".fcstd", FileFormat::freecad},
+       {".gltf", FileFormat::gltf},
+       {".glb", FileFormat::gltf},
+       {".obj", FileFormat::obj},
+       {".stl", FileFormat::stl},
+       {".ply", FileFormat::ply}}};
   const std::string suffix = lower_case(file.extension().string());
   const auto found =
       std::find_if(kSuffixes.begin(), kSuffixes.end(), [&](const auto& s) { return s.first == suffix; });
@@ -150,13 +158,14 @@ FileFormat format_of_suffix(const std::filesystem::path& file) {
 }  // namespace
 
 bool is_cad(FileFormat format) {
-  return format == FileFormat::step || format == FileFormat::iges || format == FileFormat::brep;
+  return format == FileFormat::step || format == FileFormat::iges || format == FileFormat::brep ||
+         format == FileFormat::freecad;
 }
 
 FileFormat sniff_format(const std::filesystem::path& file) {
   const FileHead head = read_head(file);
   reject_look_alikes(file, head);
-  const FileFormat format = format_of_content(head);
+  const FileFormat format = format_of_content(file, head);
   return format != FileFormat::unknown ? format : format_of_suffix(file);
 }
 

@@ -45,8 +45,11 @@ KernelDocument read(const std::filesystem::path& file, FileFormat format, Import
       return read_iges(file, progress);
     case FileFormat::brep:
       return read_brep(file, progress);
+    case FileFormat::freecad:
+      return read_freecad(file, progress);
     default:
-      throw ImportError(file.string(), "", "is not a CAD file", "STEP, IGES or BREP is needed here");
+      throw ImportError(file.string(), "", "is not a CAD file",
+                        "STEP, IGES, BREP or a FreeCAD document is needed here");
   }
 }
 

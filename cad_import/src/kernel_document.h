@@ -1,4 +1,4 @@
-// What the three readers hand over: the kernel's placed shapes with what the file says about them.
+// What the readers of CAD files hand over: the kernel's placed shapes with what the file says about them.
 #pragma once
 
 #include <TopLoc_Location.hxx>
@@ -40,6 +40,12 @@ struct KernelDocument {
 [[nodiscard]] KernelDocument read_step(const std::filesystem::path& file, ImportProgress& progress);
 [[nodiscard]] KernelDocument read_iges(const std::filesystem::path& file, ImportProgress& progress);
 [[nodiscard]] KernelDocument read_brep(const std::filesystem::path& file, ImportProgress& progress);
+[[nodiscard]] KernelDocument read_freecad(const std::filesystem::path& file, ImportProgress& progress);
+
+/// Reads one shape from text or binary BREP. Throws ImportError naming `file` and `entry` (empty: the file is
+/// the shape), and Cancelled.
+[[nodiscard]] TopoDS_Shape read_brep_shape(std::string bytes, const std::string& file,
+                                           const std::string& entry, ImportProgress& progress);
 
 /// Splits a part into bodies: its solids, its shells outside solids, its loose faces together.
 [[nodiscard]] std::vector<KernelBody> split_into_bodies(const TopoDS_Shape& part, const std::string& name,

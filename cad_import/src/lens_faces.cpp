@@ -275,6 +275,11 @@ LensFaces recognise_lens(const CadModel& model, std::span<const int> front, std:
 std::optional<LensFaces> lens_in_body(const CadModel& model, int body) {
   const Body& solid = model.bodies[std::size_t(body)];
   if (!solid.solid || solid.faces.size() > kMostFaces) return std::nullopt;
+  const auto has = [&](const char* name) {
+    return std::any_of(solid.faces.begin(), solid.faces.end(),
+                       [&](int face) { return model.faces[std::size_t(face)].name == name; });
+  };
+  if (has("Glass") && has("Back")) return std::nullopt;  // by shape, it could be a lens without power
   const std::vector<Group> groups = groups_of_body(model, body, smooth_face_groups(model, {.planar = true}));
   const Pair pair = largest_pair(groups);
   if (!pair.first) return std::nullopt;

@@ -26,6 +26,7 @@ TEST(Info, MirrorMadeIsTheMirrorRead) {
   EXPECT_EQ(info.at("unit"), "mm");
   ASSERT_EQ(info.at("bodies").size(), 1u);
   EXPECT_TRUE(info.at("bodies").at(0).at("solid").get<bool>());
+  EXPECT_FALSE(info.at("bodies").at(0).contains("lens")) << "a mirror glass is no lens";
   std::set<std::string> names;
   for (const json& face : info.at("bodies").at(0).at("faces")) {
     names.insert(face.at("name").get<std::string>());

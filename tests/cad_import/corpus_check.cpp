@@ -129,7 +129,57 @@ void check_lens(const CadModel& model, const Expectation& expected, std::vector<
   compare("back curvature", expected.lens_back_curvature, mean(lens.back_curvature), 1e-6, complaints);
 }
 
-Found import_file(const fs::path& file, const Expectation& expected, std::vector<std::string>& complaints) {
+double squared(const glm::dvec3& v) {
+  return v.x * v.x + v.y * v.y + v.z * v.z;
+}
+
+/// Parameters of the point of the face nearest to `wanted`, by ever finer grids around the best so far.
+glm::dvec2 nearest_on_face(const Face& face, const glm::dvec3& wanted) {
+  constexpr int kSteps = 100, kRounds = 12;
+  const ParameterDomain d = face.surface->domain();
+  glm::dvec2 best(0.5 * (d.u_min + d.u_max), 0.5 * (d.v_min + d.v_max));
+  double u_span = d.u_max - d.u_min, v_span = d.v_max - d.v_min, nearest = 1e300;
+  for (int round = 0; round < kRounds; ++round, u_span *= 0.1, v_span *= 0.1) {
+    const glm::dvec2 around = best;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int k = 0; k <= kSteps; ++k) {
+        const glm::dvec2 uv(std::clamp(around.x + u_span * (double(i) / kSteps - 0.5), d.u_min, d.u_max),
+                            std::clamp(around.y + v_span * (double(k) / kSteps - 0.5), d.v_min, d.v_max));
+        const double distance = squared(face.surface->point(uv.x, uv.y) - wanted);
+        if (distance < nearest && face.trim->contains(uv.x, uv.y)) {
+          nearest = distance;
+          best = uv;
+        }
+      }
+  }
+  return best;
+}
+
+/// Holds the faces of `model` to the lines for `name` in the table of points.
+void check_points(const CadModel& model, const fs::path& table, const std::string& name,
+                  std::vector<std::string>& complaints) {
+  std::ifstream stream(table);
+  for (std::string line; std::getline(stream, line);) {
+    const std::vector<std::string> f = split(line);
+    if (line.empty() || line.front() == '#' || f[0] != name) continue;
+    const auto face = std::ranges::find(model.faces, f[1], &Face::name);
+    if (face == model.faces.end()) {
+      complaints.push_back("no face is called \"" + f[1] + "\"");
+      continue;
+    }
+    const glm::dvec3 wanted(std::stod(f[2]), std::stod(f[3]), std::stod(f[4]));
+    const glm::dvec2 uv = nearest_on_face(*face, wanted);
+    const glm::dvec3 apart = face->surface->point(uv.x, uv.y) - wanted;
+    const std::string place = f[1] + " at " + f[2] + ", " + f[3] + ", " + f[4];
+    compare("distance of " + place, 0, std::sqrt(squared(apart)), number(f[5]).value_or(0), complaints);
+    const PrincipalCurvatures k = face->surface->principal_curvatures(uv.x, uv.y);
+    compare("curvature of " + place, number(f[6]), std::max(std::abs(k.k1), std::abs(k.k2)),
+            number(f[7]).value_or(0), complaints);
+  }
+}
+
+Found import_file(const fs::path& file, const Expectation& expected, const fs::path& points,
+                  std::vector<std::string>& complaints) {
   const std::string& outcome = expected.outcome;
   if (outcome == "mesh" || (outcome == "error" && !is_cad(sniff_format(file)))) {
     const TriangleMesh mesh = import_mesh(file);
@@ -138,6 +188,7 @@ Found import_file(const fs::path& file, const Expectation& expected, std::vector
   const CadModel model = import_cad(file);
   check_surfaces(model, complaints);
   check_lens(model, expected, complaints);
+  check_points(model, points, expected.file, complaints);
   const auto solids =
       std::count_if(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.solid; });
   return {model.bounds, static_cast<double>(solids), static_cast<double>(model.faces.size()), 0,
@@ -168,7 +219,8 @@ void compare_error(const Expectation& expected, const fs::path& file, const std:
     complaints.push_back("the error does not say \"" + expected.reason + "\"");
 }
 
-int check_file(const std::vector<Expectation>& table, const fs::path& corpus, const std::string& name) {
+int check_file(const std::vector<Expectation>& table, const fs::path& points, const fs::path& corpus,
+               const std::string& name) {
   const auto line =
       std::find_if(table.begin(), table.end(), [&](const Expectation& e) { return e.file == name; });
   Expectation expected;
@@ -180,7 +232,7 @@ int check_file(const std::vector<Expectation>& table, const fs::path& corpus, co
   const fs::path file = corpus / name;
   try {
     if (expected.outcome.empty()) expected.outcome = is_cad(sniff_format(file)) ? "cad" : "mesh";
-    const Found found = import_file(file, expected, complaints);
+    const Found found = import_file(file, expected, points, complaints);
     const glm::dvec3 size = found.bounds.max - found.bounds.min;
     std::cout.precision(10);
     std::cout << "size " << size.x << " x " << size.y << " x " << size.z << " mm, " << found.solids
@@ -217,6 +269,8 @@ int main(int argc, char** argv) {
   if (arguments.size() < 2 || arguments.size() > 3) return 2;
   make_kernel_tables();
   const std::vector<Expectation> table = read_table(arguments[0]);
-  return arguments.size() == 2 ? check_table(table, arguments[1])
-                               : check_file(table, arguments[1], arguments[2]);
+  return arguments.size() == 2
+             ? check_table(table, arguments[1])
+             : check_file(table, fs::path(arguments[0]).replace_filename("corpus_points.tsv"), arguments[1],
+                          arguments[2]);
 }

@@ -1,6 +1,7 @@
 // Bad files, cancellation, progress, and the fence around the kernel's global state.
 #include <gtest/gtest.h>
 #include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepTools.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <sstream>
 #include <stdexcept>
 
 #include "cad_import/import.h"
@@ -60,6 +62,22 @@ TEST(ImportCadFailure, EveryCutOfAFileIsRefusedOrReadButNeverCrashes) {
     test::write_text(folder / "cut.step", text.substr(0, length));
     EXPECT_FALSE(refusal(folder / "cut.step").empty()) << length;
   }
+}
+
+// The kernel's own reader never comes back from a text that ends within its list of shapes.
+TEST(ImportCadFailure, EveryCutOfABrepIsRefused) {
+  const ScratchFolder folder;
+  std::ostringstream whole;
+  BRepTools::Write(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), whole);
+  const std::string text = whole.str();
+  test::write_text(folder / "whole.brep", text);
+  EXPECT_EQ(refusal(folder / "whole.brep"), "");
+  testing::internal::CaptureStdout();
+  for (std::size_t length = 1; length < text.size() - 8; length += text.size() / 60 + 1) {
+    test::write_text(folder / "cut.brep", text.substr(0, length));
+    EXPECT_FALSE(refusal(folder / "cut.brep").empty()) << length;
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
 TEST(ImportCadFailure, FileWithoutFacesSaysSo) {
