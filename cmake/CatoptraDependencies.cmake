@@ -19,6 +19,7 @@ find_package(CLI11 REQUIRED)                                       # app        
 find_package(tomlplusplus REQUIRED)                                # app             libtomlplusplus-dev
 find_package(spdlog REQUIRED)                                      # app             libspdlog-dev
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)               # app             libssl-dev
+find_package(SQLite3 3.40 REQUIRED)                                # app             libsqlite3-dev
 find_package(Freetype REQUIRED)                                    # examples        libfreetype-dev
 if(CATOPTRA_BUILD_TESTS)
   find_package(GTest REQUIRED)                                     # tests           libgtest-dev

@@ -7,7 +7,7 @@ packages=(
   libglm-dev libocct-data-exchange-dev libocct-modeling-algorithms-dev libocct-ocaf-dev libocct-visualization-dev libfontconfig-dev
   libassimp-dev libopenmesh-dev libembree-dev libtbb-dev libyaml-cpp-dev libopenimageio-dev openimageio-tools
   libepoxy-dev libegl-dev libgl1-mesa-dri libegl1
-  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libfreetype-dev fonts-dejavu-core
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libsqlite3-dev libfreetype-dev fonts-dejavu-core
   libgtest-dev
 )
 

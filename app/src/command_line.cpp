@@ -75,7 +75,7 @@ CommandLine::CommandLine()
   add_common_options(root, common);
   commands = {add_info_command(root, common), add_render_command(root, common),
               add_compare_command(root, common), add_bench_command(root, common)};
-  for (auto add : {add_lens_commands, add_mirror_commands, add_documentation_commands, add_reserved_commands})
+  for (auto add : {add_lens_commands, add_mirror_commands, add_batch_commands, add_documentation_commands})
     for (Command& command : add(root, common)) commands.push_back(std::move(command));
   root.require_subcommand(0, 1);
   root.footer(

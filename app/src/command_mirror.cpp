@@ -104,16 +104,4 @@ std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common) 
           {evaluate, []() -> int { throw UsageError("'catoptra mirror evaluate' is not in this version"); }}};
 }
 
-std::vector<Command> add_reserved_commands(CLI::App& root, CommonOptions&) {
-  std::vector<Command> commands;
-  for (const std::string name : {"batch"}) {
-    CLI::App* app = root.add_subcommand(name, "Not in this version")->group("")->prefix_command();
-    commands.push_back({app, [name]() -> int {
-                          throw UsageError("'catoptra " + name + "' is not in this version",
-                                           "see catoptra --help for what is");
-                        }});
-  }
-  return commands;
-}
-
 }  // namespace catoptra::app

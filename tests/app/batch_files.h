@@ -1,0 +1,71 @@
+// Small batch plans and direct looks into their databases.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "tests/app/command_runner.h"
+#include "tests/app/temporary_folder.h"
+
+namespace catoptra::test {
+
+/// The first column of the first row; empty where there is none. Throws where SQLite refuses.
+inline std::string ask_sqlite(const std::filesystem::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  std::string answer;
+  const auto keep = [](void* to, int count, char** values, char**) {
+    auto& text = *static_cast<std::string*>(to);
+    if (text.empty() && count > 0 && values[0]) text = values[0];
+    return 0;
+  };
+  sqlite3_open(file.c_str(), &database);
+  sqlite3_busy_timeout(database, 10000);
+  char* message = nullptr;
+  const int code = sqlite3_exec(database, sql.c_str(), keep, &answer, &message);
+  const std::string failure = message ? message : "";
+  sqlite3_free(message);
+  sqlite3_close(database);
+  if (code != SQLITE_OK) throw std::runtime_error(sql + ": " + failure);
+  return answer;
+}
+
+/// `lenses` minus lenses of 40 mm in `poses` positions, seen straight ahead and at four oblique gazes.
+inline std::string many_poses_plan(int lenses, int poses) {
+  return "wavelengths_nm = [546.07]\n"
+         "[[prescriptions]]\n"
+         "sph = { from = -" +
+         std::to_string(lenses) +
+         ", to = -1, step = 1 }\n"
+         "diameter = 40\nmaterial = \"CR-39\"\n"
+         "[[poses]]\nmode = \"as-worn\"\n"
+         "rotation_centre_mm = { from = 25, to = " +
+         std::to_string(25 + (poses - 1) * 0.01) +
+         ", step = 0.01 }\n"
+         "panto_deg = 8\n"
+         "[[gaze]]\ndirections_deg = [[0, 0], [10, 0], [0, -12], [15, 15], [-20, 5]]\n";
+}
+
+/// What a batch gives, for byte-by-byte comparison: the cases and the points.
+inline std::string exported(const std::filesystem::path& database) {
+  const std::string file = database.string();
+  return run_catoptra({"batch", "export", "--db", file, "-o", "-"}).output + "\n" +
+         run_catoptra({"batch", "export", "--db", file, "--points", "-o", "-"}).output;
+}
+
+/// Empty where both databases hold the same rows in every table of results; else the table.
+inline std::string differing_table(const std::filesystem::path& a, const std::filesystem::path& b) {
+  for (const std::string table : {"cases", "results", "points"})
+    for (const auto& [one, other] : {std::pair{"main", "other"}, {"other", "main"}}) {
+      const std::string from = std::string("SELECT * FROM ") + one + "." + table;
+      const std::string to = std::string("SELECT * FROM ") + other + "." + table;
+      const std::string count = ask_sqlite(
+          a, "ATTACH '" + b.string() + "' AS other; SELECT count(*) FROM (" + from + " EXCEPT " + to + ")");
+      if (count != "0") return table;
+    }
+  return {};
+}
+
+}  // namespace catoptra::test
