@@ -26,7 +26,9 @@ constexpr std::uintmax_t kChecked_bytes = 256u << 20;
 /// ends; the file beside the database only carries it.
 class WriterLock {
  public:
-  explicit WriterLock(const std::filesystem::path& database) : path_(database.string() + ".lock") {
+  /// Under whichever name the database is known.
+  explicit WriterLock(const std::filesystem::path& database)
+      : path_(std::filesystem::weakly_canonical(database).string() + ".lock") {
     // A file that its last owner removed meanwhile carries no lock that anybody else would see.
     while (!take(database)) release();
   }
@@ -104,7 +106,7 @@ struct BatchStore::Impl {
 
   explicit Impl(const std::filesystem::path& path)
       : file(path),
-        lock(std::filesystem::weakly_canonical(path)),
+        lock(path),
         database(open_for_writing(path)),
         finish(
             database,

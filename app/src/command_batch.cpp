@@ -1,5 +1,4 @@
 // catoptra batch run, status, export
-#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -79,8 +78,6 @@ int run_run(const RunOptions& options, const CommonOptions& common) {
     throw UsageError("--db is required", "the database for the results, or --list");
   const BatchPlan plan = read_batch_plan(options.plan);
   if (options.list) return list_cases(plan);
-  // A limit on file sizes is a failed write like a full disk, not the end of the process.
-  std::signal(SIGXFSZ, SIG_IGN);
   BatchProgress ran;
   {
     BatchStore store(options.database);

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -112,6 +113,9 @@ std::vector<render::Mode> parse_modes(const std::vector<std::string>& names) {
 }
 
 int run_command_line(int argc, char** argv) {
+  // A limit on file sizes is a failed write like a full disk, with its error line, and not the end of the
+  // process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     CommandLine line;
     try {

@@ -15,13 +15,20 @@ namespace {
 /// How long a statement waits for another connection's lock.
 constexpr int kPatience_ms = 10000;
 
-/// A file in WAL mode whose folder cannot be written cannot be read either: SQLite wants to make its index
-/// file. Where no log lies beside it, nothing can change and the file may be read as it is.
+/// A file in WAL mode can be read where SQLite may make its index file beside it; not in a folder that cannot
+/// be written, or on a full disk. Where no log lies beside the file, nothing can change and it may be read as
+/// it is.
 bool may_be_immutable(const std::filesystem::path& file) {
   std::filesystem::path log = file;
   log += "-wal";
-  std::error_code ignored;
-  return !std::filesystem::exists(log, ignored);
+  std::error_code failure;
+  const auto size = std::filesystem::file_size(log, failure);
+  return failure || size == 0;
+}
+
+bool has_no_room_for_index(int code) {
+  const int kind = code & 0xff;
+  return kind == SQLITE_CANTOPEN || kind == SQLITE_IOERR || kind == SQLITE_FULL || kind == SQLITE_READONLY;
 }
 
 std::string uri_of(const std::filesystem::path& file, std::string_view parameters) {
@@ -57,7 +64,7 @@ SqliteDatabase::SqliteDatabase(const std::filesystem::path& file, SqliteAccess a
   sqlite3* opened = nullptr;
   int code = open_at(&opened, uri_of(file, ""), SQLITE_OPEN_READWRITE | create);
   handle_.reset(opened);
-  if (!create && (code & 0xff) == SQLITE_CANTOPEN && may_be_immutable(file)) {
+  if (!create && has_no_room_for_index(code) && may_be_immutable(file)) {
     code = open_at(&opened, uri_of(file, "?immutable=1"), SQLITE_OPEN_READONLY);
     handle_.reset(opened);
   }

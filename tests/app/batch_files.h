@@ -32,7 +32,37 @@ inline std::string ask_sqlite(const std::filesystem::path& file, const std::stri
   return answer;
 }
 
-/// `lenses` minus lenses of 40 mm in `poses` positions, seen straight ahead and at four oblique gazes.
+/// The first number of the first row, as the double that is stored.
+inline double number_in_sqlite(const std::filesystem::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  sqlite3_stmt* statement = nullptr;
+  sqlite3_open(file.c_str(), &database);
+  sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr);
+  if (sqlite3_step(statement) != SQLITE_ROW) throw std::runtime_error(sql + ": no row");
+  const double value = sqlite3_column_double(statement, 0);
+  sqlite3_finalize(statement);
+  sqlite3_close(database);
+  return value;
+}
+
+/// The cells of one line of CSV.
+inline std::vector<std::string> csv_cells(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[i++];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += line[i];
+  }
+  return cells;
+}
+
+/// `lenses` minus lenses of 40 mm in `poses` positions, at 21 gazes.
 inline std::string many_poses_plan(int lenses, int poses) {
   return "wavelengths_nm = [546.07]\n"
          "[[prescriptions]]\n"
@@ -45,7 +75,7 @@ inline std::string many_poses_plan(int lenses, int poses) {
          std::to_string(25 + (poses - 1) * 0.01) +
          ", step = 0.01 }\n"
          "panto_deg = 8\n"
-         "[[gaze]]\ndirections_deg = [[0, 0], [10, 0], [0, -12], [15, 15], [-20, 5]]\n";
+         "[[gaze]]\nmax_deg = 20\nstep_deg = 8\n";
 }
 
 /// What a batch gives, for byte-by-byte comparison: the cases and the points.

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <random>
@@ -41,6 +41,8 @@ class BatchProcess {
     if (posix_spawn(&process_, CATOPTRA_PROGRAM, &actions, nullptr, pointers.data(), environ) != 0)
       throw std::runtime_error("cannot start " CATOPTRA_PROGRAM);
     posix_spawn_file_actions_destroy(&actions);
+    // Behind this test, so that on a busy machine too a kill comes when it is meant to.
+    (void)setpriority(PRIO_PROCESS, id_t(process_), 19);
   }
   BatchProcess(const BatchProcess&) = delete;
   BatchProcess& operator=(const BatchProcess&) = delete;
@@ -77,17 +79,13 @@ int stored(const std::filesystem::path& database) {
   }
 }
 
-/// Runs until `wanted` results are there and a random moment longer, or, where they are there already, for a
-/// random moment from the start (which meets start-up, the plan, or a lens in the making). True where it was
-/// interrupted.
+/// Runs until `wanted` results are there and a random moment longer; where `wanted` is 0, for a random moment
+/// from the start (which meets start-up, the plan, or a lens in the making). True where it was interrupted.
 bool run_and_kill(const std::filesystem::path& plan, const std::filesystem::path& database, int wanted,
                   std::mt19937_64& random) {
-  const bool at_once = stored(database) >= wanted;
   BatchProcess process(plan, database);
-  while (!at_once && process.running() && stored(database) < wanted)
-    std::this_thread::sleep_for(microseconds(500));
-  const int most_us = at_once ? 300000 : 3000;
-  std::this_thread::sleep_for(microseconds(random() % std::uint64_t(most_us)));
+  while (process.running() && stored(database) < wanted) std::this_thread::sleep_for(microseconds(200));
+  std::this_thread::sleep_for(microseconds(random() % (wanted == 0 ? 300000u : 2000u)));
   return process.kill_now();
 }
 
@@ -105,23 +103,22 @@ TEST(BatchKill, TwentyKillsGiveTheRowsOfAnUndisturbedRun) {
 
   constexpr std::uint64_t kSeed = 20261124;
   std::mt19937_64 random(kSeed);
-  std::vector<int> moments;
-  for (int i = 0; i < kKills; ++i) moments.push_back(1 + int(random() % (kCases - 50)));
-  std::sort(moments.begin(), moments.end());
   int interrupted = 0, before = 0;
   std::set<int> found;
-  for (const int moment : moments) {
-    interrupted += run_and_kill(plan, killed, moment, random);
+  for (int left = kKills; left > 0; --left) {
+    // Some steps further on, so that at any speed of the machine enough is left for the kills to come.
+    const int step = 1 + int(random() % std::uint64_t(1 + (kCases - before) / (left + 2)));
+    interrupted += run_and_kill(plan, killed, left % 5 == 0 ? 0 : before + step, random);
     const int now = stored(killed);
     EXPECT_GE(now, before) << "a kill must not lose what was stored";
-    EXPECT_EQ(ask_sqlite(killed, "PRAGMA quick_check"), "ok");
+    EXPECT_TRUE(now == 0 || ask_sqlite(killed, "PRAGMA quick_check") == "ok");
     before = now;
     found.insert(now);
   }
   std::cout << "seed " << kSeed << ": " << interrupted << " of " << kKills << " kills interrupted a run; "
             << found.size() << " different numbers of results were found after them\n";
   EXPECT_GE(interrupted, 15) << "the batch has to be longer for kills to meet it";
-  EXPECT_GE(found.size(), 8u) << "kills have to meet different moments";
+  EXPECT_GE(found.size(), 10u) << "kills have to meet different moments";
   ASSERT_LT(before, kCases) << "something has to be left to go on with";
 
   const CommandResult rest = run_catoptra({"batch", "run", plan.string(), "--db", killed.string()});
@@ -140,13 +137,13 @@ TEST(BatchKill, AKillWhileTheDatabaseIsMadeLeavesOneThatCanBeUsed) {
   const auto calm = folder / "calm.sqlite";
   ASSERT_EQ(run_catoptra({"batch", "run", plan.string(), "--db", calm.string()}).code, 0);
   std::set<bool> made;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const auto database = folder / ("early" + std::to_string(i) + ".sqlite");
     BatchProcess process(plan, database);
     // As soon as the file is there: the moments after that are those in which the tables are made.
     while (process.running() && !std::filesystem::exists(database))
       std::this_thread::sleep_for(microseconds(20));
-    std::this_thread::sleep_for(microseconds(i * 150));
+    std::this_thread::sleep_for(microseconds(i * 200));
     EXPECT_TRUE(process.kill_now());
     made.insert(std::filesystem::exists(database) && std::filesystem::file_size(database) > 0);
     const CommandResult rest = run_catoptra({"batch", "run", plan.string(), "--db", database.string()});
