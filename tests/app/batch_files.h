@@ -12,8 +12,10 @@
 
 namespace catoptra::test {
 
-/// The first column of the first row; empty where there is none. Throws where SQLite refuses.
-inline std::string ask_sqlite(const std::filesystem::path& file, const std::string& sql) {
+/// The first column of the first row; empty where there is none. Throws where SQLite refuses. `tidy`: the log
+/// that a killed process has left may be put into the file afterwards; else that is left to the program under
+/// test.
+inline std::string ask_sqlite(const std::filesystem::path& file, const std::string& sql, bool tidy = true) {
   sqlite3* database = nullptr;
   std::string answer;
   const auto keep = [](void* to, int count, char** values, char**) {
@@ -21,8 +23,9 @@ inline std::string ask_sqlite(const std::filesystem::path& file, const std::stri
     if (text.empty() && count > 0 && values[0]) text = values[0];
     return 0;
   };
-  sqlite3_open(file.c_str(), &database);
+  sqlite3_open_v2(file.c_str(), &database, SQLITE_OPEN_READWRITE | (tidy ? SQLITE_OPEN_CREATE : 0), nullptr);
   sqlite3_busy_timeout(database, 10000);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, tidy ? 0 : 1, nullptr);
   char* message = nullptr;
   const int code = sqlite3_exec(database, sql.c_str(), keep, &answer, &message);
   const std::string failure = message ? message : "";
