@@ -32,6 +32,7 @@ set(PYBIND11_FINDPYTHON ON)
 set(PYBIND11_PYTHON_VERSION ${Python3_VERSION})
 set(Python_EXECUTABLE ${Python3_EXECUTABLE})
 find_package(pybind11 2.10 REQUIRED)                               # app             pybind11-dev
+find_package(SQLite3 3.40 REQUIRED)                                # app             libsqlite3-dev
 find_package(Freetype REQUIRED)                                    # examples        libfreetype-dev
 if(CATOPTRA_BUILD_TESTS)
   find_package(GTest REQUIRED)                                     # tests           libgtest-dev

@@ -8,7 +8,7 @@ packages=(
   libglm-dev libocct-data-exchange-dev libocct-modeling-algorithms-dev libocct-ocaf-dev libocct-visualization-dev libfontconfig-dev
   libassimp-dev libzip-dev libpugixml-dev libopenmesh-dev libembree-dev libtbb-dev libyaml-cpp-dev libopenimageio-dev openimageio-tools
   libepoxy-dev libegl-dev libgl1-mesa-dri libegl1
-  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libfreetype-dev fonts-dejavu-core
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libspdlog-dev libssl-dev libsqlite3-dev libfreetype-dev fonts-dejavu-core
   python3-dev pybind11-dev python3-numpy
   libgtest-dev
 )

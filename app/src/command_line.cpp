@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -118,7 +119,7 @@ CommandLine::CommandLine()
   add_common_options(root, common);
   commands = {add_info_command(root, common), add_render_command(root, common),
               add_compare_command(root, common), add_bench_command(root, common)};
-  for (auto add : {add_lens_commands, add_mirror_commands, add_documentation_commands, add_reserved_commands})
+  for (auto add : {add_lens_commands, add_mirror_commands, add_batch_commands, add_documentation_commands})
     for (Command& command : add(root, common)) commands.push_back(std::move(command));
   root.require_subcommand(0, 1);
   root.footer(
@@ -155,6 +156,9 @@ std::vector<render::Mode> parse_modes(const std::vector<std::string>& names) {
 }
 
 int run_command_line(int argc, char** argv) {
+  // A limit on file sizes is a failed write like a full disk, with its error line, and not the end of the
+  // process.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     CommandLine line;
     try {

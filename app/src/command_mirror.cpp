@@ -118,16 +118,4 @@ std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common) 
   return {{make, [options] { return run_make(*options); }}, add_mirror_evaluate_command(*mirror, common)};
 }
 
-std::vector<Command> add_reserved_commands(CLI::App& root, CommonOptions&) {
-  std::vector<Command> commands;
-  for (const std::string name : {"batch"}) {
-    CLI::App* app = root.add_subcommand(name, "Not in this version")->group("")->prefix_command();
-    commands.push_back({app, [name]() -> int {
-                          throw UsageError("'catoptra " + name + "' is not in this version",
-                                           "see catoptra --help for what is");
-                        }});
-  }
-  return commands;
-}
-
 }  // namespace catoptra::app

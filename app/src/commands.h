@@ -45,8 +45,7 @@ CLI::App* add_subcommand(CLI::App& parent, CommonOptions& common, const std::str
 [[nodiscard]] std::vector<Command> add_mirror_commands(CLI::App& root, CommonOptions& common);
 [[nodiscard]] Command add_mirror_evaluate_command(CLI::App& mirror, CommonOptions& common);
 [[nodiscard]] std::vector<Command> add_documentation_commands(CLI::App& root, CommonOptions& common);
-/// Commands of the interface that this version does not have: they say so and exit with 2.
-[[nodiscard]] std::vector<Command> add_reserved_commands(CLI::App& root, CommonOptions& common);
+[[nodiscard]] std::vector<Command> add_batch_commands(CLI::App& root, CommonOptions& common);
 
 /// The whole command line, as the parser, the man page and the shell completions see it.
 struct CommandLine {

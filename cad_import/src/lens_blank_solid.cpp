@@ -24,7 +24,6 @@
 
 #include "cad_import/import.h"
 #include "cad_import/src/kernel_document.h"
-#include "cad_import/src/kernel_session.h"
 #include "cad_import/src/lens_blank_parts.h"
 #include "cad_import/src/model_builder.h"
 
@@ -167,8 +166,8 @@ NamedSolid lens_solid(const LensShape& shape) try {
 }  // namespace
 
 CadModel lens_model(const LensShape& shape) try {
+  // No KernelSession: nothing here reads or writes a file, and lenses are made on many threads at once.
   const NamedSolid lens = lens_solid(shape);
-  const KernelSession session;
   KernelDocument document;
   document.format = "made";
   document.unit = "mm";

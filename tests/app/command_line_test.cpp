@@ -16,9 +16,21 @@ std::size_t lines_in(const std::string& text) {
   return std::size_t(std::count(text.begin(), text.end(), '\n'));
 }
 
-const std::vector<std::vector<std::string>> kCommands{
-    {},         {"info"},           {"render"}, {"compare"},   {"bench"}, {"lens"}, {"lens", "make"},
-    {"mirror"}, {"mirror", "make"}, {"man"},    {"completion"}};
+const std::vector<std::vector<std::string>> kCommands{{},
+                                                      {"info"},
+                                                      {"render"},
+                                                      {"compare"},
+                                                      {"bench"},
+                                                      {"lens"},
+                                                      {"lens", "make"},
+                                                      {"batch"},
+                                                      {"batch", "run"},
+                                                      {"batch", "status"},
+                                                      {"batch", "export"},
+                                                      {"mirror"},
+                                                      {"mirror", "make"},
+                                                      {"man"},
+                                                      {"completion"}};
 
 TEST(CommandLine, EveryCommandHasHelpAndVersion) {
   for (const auto& command : kCommands) {
@@ -72,6 +84,10 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"lens", "make", "--back", "cylinder", "-o", "l.step"},
       {"lens", "make", "--back", "toric", "--back-conic", "-1", "-o", "l.step"},
       {"batch", "run", "plan.toml"},
+      {"batch", "run", "plan.toml", "--db", "r.sqlite", "--jobs", "-1"},
+      {"batch", "status"},
+      {"batch", "export", "--db", "r.sqlite"},
+      {"batch", "report", "--db", "r.sqlite", "-o", "r.html"},
       {"completion", "csh"},
   };
   for (const auto& arguments : wrong) {

@@ -1,0 +1,209 @@
+#include "app/src/batch_lens_case.h"
+
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cad_import/error.h"
+
+namespace catoptra::app {
+namespace {
+
+using cad_import::LensBlank;
+using cad_import::LensFrontForm;
+using nlohmann::json;
+
+/// Goes up whenever the same inputs give other numbers: results of older versions are then computed anew.
+constexpr int kEvaluation = 1;
+
+constexpr std::array<BlankNumber, 13> kBlankNumbers{
+    {{"sph", "sph_d", &LensBlank::sphere_d},
+     {"cyl", "cyl_d", &LensBlank::cylinder_d},
+     {"axis", "axis_deg", &LensBlank::axis_deg},
+     {"add", "add_d", &LensBlank::addition_d},
+     {"corridor", "corridor_mm", &LensBlank::corridor_mm},
+     {"prism", "prism_pd", &LensBlank::prism_d},
+     {"base_deg", "base_deg", &LensBlank::prism_base_deg},
+     {"front_curve", "front_curve_d", nullptr, &LensBlank::front_curve_d},
+     {"conic", "conic", &LensBlank::conic},
+     {"back_conic", "back_conic", &LensBlank::back_conic},
+     {"center_thickness", "center_thickness_mm", nullptr, &LensBlank::center_thickness_mm},
+     {"edge_thickness", "edge_thickness_mm", nullptr, &LensBlank::edge_thickness_mm},
+     {"diameter", "diameter_mm", &LensBlank::diameter_mm}}};
+
+constexpr std::array<const char*, 4> kFronts{"sphere", "conic", "asphere", "freeform"};
+
+[[noreturn]] void refuse(const std::string& reason) {
+  throw Error("", "case", reason, "it has to come from a plan that this version has read");
+}
+
+/// The form that a lens gets where none is asked for, as in `lens make`.
+void leave_out_idle(LensBlank& blank) {
+  const LensBlank standard;
+  if (blank.cylinder_d == 0) blank.axis_deg = standard.axis_deg;
+  if (blank.prism_d == 0) blank.prism_base_deg = standard.prism_base_deg;
+  if (blank.front != LensFrontForm::freeform) blank.corridor_mm = standard.corridor_mm;
+}
+
+json number_or_null(std::optional<double> value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+json blank_json(LensBlank blank) {
+  leave_out_idle(blank);
+  json inputs;
+  for (const BlankNumber& number : kBlankNumbers)
+    inputs[number.column] =
+        number.value ? json(blank.*number.value + 0.0) : number_or_null(blank.*number.optional_value);
+  inputs["front"] = front_name(blank.front);
+  inputs["asphere_mm"] = blank.asphere_mm;
+  return inputs;
+}
+
+LensBlank blank_from(const json& inputs) {
+  LensBlank blank;
+  for (const BlankNumber& number : kBlankNumbers) {
+    const json& value = inputs.at(number.column);
+    if (number.value)
+      blank.*number.value = value.get<double>();
+    else if (!value.is_null())
+      blank.*number.optional_value = value.get<double>();
+  }
+  const auto front = front_from_name(inputs.at("front").get<std::string>());
+  if (!front) refuse("has an unknown form of front");
+  blank.front = *front;
+  blank.asphere_mm = inputs.at("asphere_mm").get<std::vector<double>>();
+  return blank;
+}
+
+/// Indices that the evaluation uses: they are what a material is to it, whatever its name.
+json index_json(const LensCase& lens_case) {
+  const optics::Medium medium = lens_case.material.medium();
+  return {{"index", medium.index(lens_case.options.wavelength_nm)},
+          {"index_f", medium.index(optics::kLineF_nm)},
+          {"index_c", medium.index(optics::kLineC_nm)}};
+}
+
+json gaze_json(const CaseGaze& gaze) {
+  if (gaze.directions_deg.empty()) return {{"gaze_max_deg", gaze.max_deg}, {"gaze_step_deg", gaze.step_deg}};
+  json directions = json::array();
+  for (const glm::dvec2& d : gaze.directions_deg) directions.push_back({d.x, d.y});
+  return {{"gaze_deg", std::move(directions)}};
+}
+
+}  // namespace
+
+optics::Medium CaseMaterial::medium() const {
+  if (!name.empty()) return optics::built_in_media().find(name);
+  return vd ? optics::abbe_medium(nd.value(), *vd) : optics::constant_medium(nd.value());
+}
+
+std::vector<glm::dvec2> CaseGaze::in_radians() const {
+  if (directions_deg.empty()) return optics::gaze_grid(glm::radians(max_deg), glm::radians(step_deg));
+  std::vector<glm::dvec2> directions;
+  for (const glm::dvec2& d : directions_deg) directions.push_back(glm::radians(d));
+  return directions;
+}
+
+optics::EvaluationOptions LensCase::evaluation_options() const {
+  optics::EvaluationOptions result = options;
+  result.position.pantoscopic_rad = glm::radians(panto_deg);
+  result.position.wrap_rad = glm::radians(wrap_deg);
+  result.threads = 1;  // cases run beside one another
+  return result;
+}
+
+std::span<const BlankNumber> blank_numbers() {
+  return kBlankNumbers;
+}
+
+std::string_view front_name(LensFrontForm form) {
+  return kFronts[std::size_t(form)];
+}
+
+std::optional<LensFrontForm> front_from_name(std::string_view name) {
+  for (std::size_t i = 0; i < kFronts.size(); ++i)
+    if (kFronts[i] == name) return static_cast<LensFrontForm>(i);
+  return std::nullopt;
+}
+
+std::string to_inputs(const LensCase& lens_case) {
+  const optics::EvaluationOptions& o = lens_case.options;
+  const optics::WearingPosition& p = o.position;
+  json inputs = {{"kind", "lens"},
+                 {"evaluation", kEvaluation},
+                 {"mode", o.mode == optics::EvaluationMode::as_worn ? "as-worn" : "lensmeter"},
+                 {"eye", p.eye == optics::Eye::right ? "right" : "left"},
+                 {"rotation_centre_mm", p.rotation_centre_mm},
+                 {"vertex_distance_mm", p.vertex_distance_mm},
+                 {"panto_deg", lens_case.panto_deg},
+                 {"wrap_deg", lens_case.wrap_deg},
+                 {"object_distance_mm",
+                  number_or_null(std::isfinite(o.object_distance_mm) ? std::optional(o.object_distance_mm)
+                                                                     : std::nullopt)},
+                 {"wavelength_nm", o.wavelength_nm},
+                 {"material", lens_case.material.name},
+                 {"nd", number_or_null(lens_case.material.nd)},
+                 {"vd", number_or_null(lens_case.material.vd)}};
+  inputs.update(index_json(lens_case));
+  inputs.update(gaze_json(lens_case.gaze));
+  if (lens_case.blank)
+    inputs.update(blank_json(*lens_case.blank));
+  else
+    inputs["lens_sha256"] = lens_case.file_sha256;
+  return inputs.dump();
+}
+
+LensCase lens_case_from(std::string_view text) try {
+  const json inputs = json::parse(text);
+  if (inputs.at("kind") != "lens") refuse("is of another kind: " + inputs.at("kind").dump());
+  if (inputs.at("evaluation") != kEvaluation) refuse("belongs to another version of the evaluation");
+  const auto optional = [&](const char* key) {
+    return inputs.at(key).is_null() ? std::nullopt : std::optional(inputs.at(key).get<double>());
+  };
+  LensCase result;
+  result.material = {inputs.at("material").get<std::string>(), optional("nd"), optional("vd")};
+  optics::EvaluationOptions& o = result.options;
+  o.mode =
+      inputs.at("mode") == "as-worn" ? optics::EvaluationMode::as_worn : optics::EvaluationMode::lensmeter;
+  o.position.eye = inputs.at("eye") == "right" ? optics::Eye::right : optics::Eye::left;
+  o.position.rotation_centre_mm = inputs.at("rotation_centre_mm").get<double>();
+  o.position.vertex_distance_mm = inputs.at("vertex_distance_mm").get<double>();
+  result.panto_deg = inputs.at("panto_deg").get<double>();
+  result.wrap_deg = inputs.at("wrap_deg").get<double>();
+  if (const auto distance = optional("object_distance_mm")) o.object_distance_mm = *distance;
+  o.wavelength_nm = inputs.at("wavelength_nm").get<double>();
+  if (inputs.contains("gaze_deg"))
+    for (const json& d : inputs.at("gaze_deg"))
+      result.gaze.directions_deg.emplace_back(d.at(0).get<double>(), d.at(1).get<double>());
+  else
+    result.gaze = {inputs.at("gaze_max_deg").get<double>(), inputs.at("gaze_step_deg").get<double>(), {}};
+  if (inputs.contains("lens_sha256"))
+    result.file_sha256 = inputs.at("lens_sha256").get<std::string>();
+  else
+    result.blank = blank_from(inputs);
+  const json indices = index_json(result);
+  for (const auto& [key, index] : indices.items())
+    if (inputs.at(key) != index)
+      throw Error("", "material", "has another index here than where the plan was read",
+                  "use one version of Catoptra everywhere");
+  return result;
+} catch (const nlohmann::json::exception& failure) {
+  refuse(std::string("is not readable: ") + failure.what());
+}
+
+std::span<const std::string> lens_input_columns() {
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> names{"lens_sha256"};
+    for (const BlankNumber& number : kBlankNumbers) names.emplace_back(number.column);
+    for (const char* name :
+         {"front", "asphere_mm", "material", "nd", "vd", "index", "index_f", "index_c", "mode", "eye",
+          "rotation_centre_mm", "vertex_distance_mm", "panto_deg", "wrap_deg", "object_distance_mm",
+          "wavelength_nm", "gaze_max_deg", "gaze_step_deg", "gaze_deg"})
+      names.emplace_back(name);
+    return names;
+  }();
+  return columns;
+}
+
+}  // namespace catoptra::app
