@@ -92,7 +92,7 @@ class LensShape {
 
 /// The lens as import_cad would read it: one solid with faces `front`, `back` (B-splines of degree 5 within
 /// 1e-7 mm of the LensShape, 1e-6 mm at rims that stand almost upright) and `rim` (planes or quarter
-/// cylinders). Throws Error.
+/// cylinders). May be called from many threads at once. Throws Error.
 [[nodiscard]] CadModel lens_model(const LensShape& shape);
 
 /// Writes the same as a STEP solid in mm, under another name first, read again and checked before it is
