@@ -40,6 +40,19 @@ function batchHistogram(batch, done) {
                 {xaxis: {title: {text: batch.columns[column].title}}, yaxis: {title: {text: "cases"}}, bargap: 0.05});
 }
 
+/** Maps of one lens at a time. */
+function batchLens(batch) {
+  const lenses = (batch.lenses || []).filter((lens) => lens.points.length > 0);
+  if (!lenses.length) return null;
+  const place = make("div");
+  const select = make("select", {"aria-label": "Case"}, ...lenses.map((lens, i) =>
+    make("option", {value: i}, `${lens.lens}: ${prescription(lens.reference)}, ${lens.mode}`)));
+  const show = () => place.replaceChildren(lensSection(lenses[Number(select.value)]));
+  select.addEventListener("change", () => { show(); drawAll(); });
+  show();
+  return make("div", {}, make("h3", {}, "One lens"), make("p", {}, make("label", {}, "Show ", select)), place);
+}
+
 function batchSection(batch) {
   const section = make("section", {}, make("h2", {}, "Batch"));
   const c = batch.counts;
@@ -47,7 +60,7 @@ function batchSection(batch) {
   if (batch.failures.length)
     section.append(make("h3", {}, "Failures"), table("", [
       {title: "Cases", value: (f) => f.count, digits: 0}, {title: "Reason (the first of them)", value: (f) => f.example}], batch.failures));
-  section.append(batchPlot(batch) || "");
+  section.append(batchPlot(batch) || "", batchLens(batch) || "");
   const columns = batch.columns.map((column, i) => ({title: column.title, value: (row) => row[i], digits: column.numeric ? column.digits : undefined}));
   const rows = table("", columns, batch.rows, true);
   section.append(make("h3", {}, "Cases"));

@@ -16,5 +16,4 @@
   for (const input of report.inputs || [])
     footer.append(make("p", {}, `${input.file}: SHA-256 `, make("code", {}, input.sha256)));
   await drawAll();
-  document.documentElement.dataset.ready = String(drawn.length);  // how many plots there are, once all are drawn
 })();

@@ -84,12 +84,13 @@ function details(title, ...children) {
 }
 
 const kFont = {family: "system-ui, DejaVu Sans, sans-serif", size: 12, color: "#1d2733"};
-const drawn = [];
+const pending = [];
+let drawnCount = 0;
 
 /** A figure with a caption and a plot that follows the window's width. Drawn once it is in the page. */
 function figure(title, unit, traces, layout = {}) {
   const place = make("div", {class: "plot", role: "img", "aria-label": title});
-  drawn.push(() => Plotly.newPlot(place, traces, {
+  pending.push(() => Plotly.newPlot(place, traces, {
     font: kFont, margin: {l: 54, r: 12, t: 34, b: 44}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#9aa5b1", activecolor: "#1d2733"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "#ffffff",
     hovermode: "closest", legend: {orientation: "h", x: 0, y: 1, yanchor: "bottom"}, ...layout
@@ -119,6 +120,10 @@ function contourMap(title, unit, grid, values, text, axes, scale) {
        yaxis: {title: {text: axes.y}, zeroline: false, scaleanchor: "x", constrain: "domain"}});
 }
 
-function drawAll() {
-  return Promise.all(drawn.map((draw) => draw()));
+/** Draws what has been put into the page since the last call; data-ready on the page counts the plots drawn so far. */
+async function drawAll() {
+  const now = pending.splice(0);
+  await Promise.all(now.map((draw) => draw()));
+  drawnCount += now.length;
+  document.documentElement.dataset.ready = String(drawnCount);
 }

@@ -1,4 +1,4 @@
-// catoptra batch run, status, export
+// catoptra batch run, status, export, report
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -7,6 +7,7 @@
 
 #include "app/batch.h"
 #include "app/src/batch_export.h"
+#include "app/src/batch_report.h"
 #include "app/src/batch_store.h"
 #include "app/src/commands.h"
 #include "app/src/output_file.h"
@@ -29,6 +30,11 @@ struct StatusOptions {
 struct ExportOptions {
   std::string database, output;
   bool points = false;
+};
+
+struct ReportOptions {
+  std::string database, output;
+  int rows = int(BatchReportOptions{}.rows), maps = int(BatchReportOptions{}.maps);
 };
 
 std::string counted(std::size_t count, const std::string& noun) {
@@ -147,6 +153,15 @@ int run_export(const ExportOptions& options) {
   return kExitDone;
 }
 
+int run_report(const ReportOptions& options) {
+  BatchReader reader(options.database);
+  BatchReportOptions report;
+  report.rows = std::size_t(options.rows);
+  report.maps = std::size_t(options.maps);
+  write_text(options.output, batch_page(reader, std::filesystem::path(options.database).filename().string(), report));
+  return kExitDone;
+}
+
 void add_database(CLI::App& app, std::string& database, bool required) {
   app.add_option("--db", database, "SQLite database of the batch")
       ->required(required)
@@ -189,13 +204,23 @@ std::vector<Command> add_batch_commands(CLI::App& root, CommonOptions& common) {
   out->add_flag("--points", exporting->points,
                 "One row per point of the lenses; in JSON the points within the cases");
 
-  CLI::App* report = batch->add_subcommand("report", "Not in this version")->group("")->prefix_command();
+  auto reporting = std::make_shared<ReportOptions>();
+  CLI::App* report = add_subcommand(*batch, common, "report",
+                                    "Write a page with summary, plots, maps and all cases, to open in a browser");
+  add_database(*report, reporting->database, true);
+  report->add_option("-o,--output", reporting->output, "Page to write; - : standard output")
+      ->required()
+      ->option_text("R.html");
+  report->add_option("--rows", reporting->rows, "At most so many cases in the table (default 5000)")
+      ->check(CLI::Range(0, 1000000))
+      ->option_text("N");
+  report->add_option("--maps", reporting->maps, "At most so many lenses with maps (default 100)")
+      ->check(CLI::Range(0, 1000000))
+      ->option_text("N");
   return {{run, [running, &common] { return run_run(*running, common); }},
           {status, [asking] { return run_status(*asking); }},
           {out, [exporting] { return run_export(*exporting); }},
-          {report, []() -> int {
-             throw UsageError("'catoptra batch report' is not in this version", "'catoptra batch export' is");
-           }}};
+          {report, [reporting] { return run_report(*reporting); }}};
 }
 
 }  // namespace catoptra::app

@@ -7,6 +7,7 @@
 
 #include "app/src/commands.h"
 #include "app/src/mirror_evaluation_writers.h"
+#include "app/src/mirror_page.h"
 #include "app/src/output_file.h"
 #include "app/src/report.h"
 
@@ -14,7 +15,7 @@ namespace catoptra::app {
 namespace {
 
 struct EvaluateOptions {
-  std::string scene, mirror, rule, json;
+  std::string scene, mirror, rule, json, html;
   bool strict = false, aim = false;
   std::vector<double> eye, aim_limits_deg, aim_pivot;
   std::optional<double> far, object_distance_mm, base_mm;
@@ -59,6 +60,7 @@ MirrorEvaluationOptions evaluation_options(const EvaluateOptions& options, doubl
 }
 
 int run_evaluate(const EvaluateOptions& options, const CommonOptions& common) {
+  if (options.json == "-" && options.html == "-") throw UsageError("--json - excludes --html -");
   if (options.strict && options.rule.empty()) throw UsageError("--strict needs a rule", "give --rule");
   (void)evaluation_options(options, 1);  // wrong usage is told before minutes of import
   std::optional<tbb::global_control> limit;
@@ -72,7 +74,12 @@ int run_evaluate(const EvaluateOptions& options, const CommonOptions& common) {
   const MirrorEvaluation evaluation = evaluate_mirror(scene, evaluation_options(options, scene.unit_mm));
   progress.clear();
   if (!options.json.empty()) write_text(options.json, json_text(mirror_json(evaluation)));
-  if (options.json != "-") write_text("-", mirror_text(evaluation));
+  if (!options.html.empty()) {
+    progress.show(-1, "drawing");
+    write_text(options.html, mirror_page(evaluation, scene));
+    progress.clear();
+  }
+  if (options.json != "-" && options.html != "-") write_text("-", mirror_text(evaluation));
   return options.strict && !evaluation.passes() ? kExitCheckFailed : kExitDone;
 }
 
@@ -88,6 +95,9 @@ void add_evaluate_options(CLI::App& app, EvaluateOptions& options) {
   app.add_flag("--strict", options.strict, "Exit with 3 where a clause of the rule fails");
   app.add_option("--json", options.json, "JSON report; - writes it to standard output")
       ->option_text("R.json");
+  app.add_option("--html", options.html,
+                 "Report as one page with the field on the road and maps of the glass, to open in a browser")
+      ->option_text("R.html");
   app.add_option("--eye", options.eye,
                  "Midpoint of the ocular points, in the scene's units, in place of its own")
       ->delimiter(',')

@@ -1,0 +1,43 @@
+#include "app/src/mirror_page.h"
+
+#include <algorithm>
+
+#include "app/src/file_hash.h"
+#include "app/src/html_report.h"
+#include "app/src/mirror_evaluation_writers.h"
+#include "app/src/output_file.h"
+#include "render/renderer.h"
+
+namespace catoptra::app {
+namespace {
+
+/// The scene from its eye, as exact rays see it; wide enough to read signs by.
+std::string scene_picture(const render::Scene& scene) {
+  constexpr int kWidth = 960, kSamples = 4;
+  render::FrameOptions options;
+  options.width = kWidth;
+  options.height = std::max(1, kWidth * scene.camera.resolution.y / scene.camera.resolution.x);
+  options.samples = kSamples;
+  render::Renderer renderer(scene);
+  const auto picture = renderer.render(render::Mode::raytrace, scene.camera, options);
+  return data_address(png_bytes(picture.frame), "image/png");
+}
+
+}  // namespace
+
+std::string mirror_page(const MirrorEvaluation& evaluation, const SceneFile& scene) {
+  HtmlPage page;
+  page.title = "Mirror " + evaluation.mirror;
+  page.summary = "What the mirror shows, measured by exact rays in " + evaluation.scene;
+  page.mirrors.push_back(mirror_json(evaluation));
+  page.mirrors.back()["picture"] = scene_picture(scene.scene);
+  const auto add_input = [&](const std::filesystem::path& file) {
+    page.inputs.push_back({{"file", file.string()}, {"sha256", sha256_of_file(file)}});
+  };
+  if (evaluation.scene != "-") add_input(evaluation.scene);
+  for (const OpticSource& source : scene.optic_sources)
+    for (const auto& file : source.files) add_input(file);
+  return html_report(page);
+}
+
+}  // namespace catoptra::app
