@@ -88,8 +88,8 @@ const pending = [];
 let drawnCount = 0;
 
 /** A figure with a caption and a plot that follows the window's width. Drawn once it is in the page. */
-function figure(title, unit, traces, layout = {}) {
-  const place = make("div", {class: "plot", role: "img", "aria-label": title});
+function figure(title, unit, traces, layout = {}, tall = false) {
+  const place = make("div", {class: tall ? "plot tall" : "plot", role: "img", "aria-label": title});
   pending.push(() => Plotly.newPlot(place, traces, {
     font: kFont, margin: {l: 54, r: 12, t: 34, b: 44}, modebar: {bgcolor: "rgba(0,0,0,0)", color: "#9aa5b1", activecolor: "#1d2733"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "#ffffff",
@@ -110,7 +110,8 @@ function contourMap(title, unit, grid, values, text, axes, scale) {
   const range = {
     "about zero": {zmin: -most, zmax: most, colorscale: "RdBu"},
     "from zero": {zmin: 0, zmax: most, colorscale: "Viridis"},
-    "range": {zmin: least, zmax: Math.max(greatest, least + 1e-3), colorscale: "Cividis"}
+    // What differs by less than half a thousandth is one colour: the rest is how well a spline fits.
+    "range": {zmin: least, zmax: Math.max(greatest, least + 1e-3, least + 5e-4 * Math.abs(greatest)), colorscale: "Cividis"}
   }[scale];
   return figure(title, unit, [{
     type: "contour", x: grid.x, y: grid.y, z: values, text, hovertemplate: "%{text}<extra></extra>",
