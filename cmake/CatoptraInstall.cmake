@@ -50,5 +50,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # A software OpenGL is found at run time, so that no linked library names it.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libgl1-mesa-dri, libegl1")
+# For the Python package and its batches on a cluster.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, python3-distributed")
 set(CPACK_SOURCE_IGNORE_FILES "/\\\\.git/;/build.*/;/out/")
 include(CPack)

@@ -36,7 +36,7 @@ TEST(Documentation, NamesEveryCommand) {
   const std::string text = document("command-line.md");
   for (const char* command :
        {"info", "render", "compare", "bench", "lens make", "lens evaluate", "mirror make", "mirror evaluate",
-        "batch run", "batch status", "batch export", "man", "completion"})
+        "batch run", "batch status", "batch export", "batch report", "man", "completion"})
     EXPECT_NE(text.find("## catoptra " + std::string(command)), std::string::npos) << command;
 }
 
