@@ -87,7 +87,7 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"batch", "run", "plan.toml", "--db", "r.sqlite", "--jobs", "-1"},
       {"batch", "status"},
       {"batch", "export", "--db", "r.sqlite"},
-      {"batch", "report", "--db", "r.sqlite", "-o", "r.html"},
+      {"batch", "report", "--db", "r.sqlite"},
       {"completion", "csh"},
   };
   for (const auto& arguments : wrong) {
