@@ -53,10 +53,14 @@ for (const [device, width, height] of [["laptop", 1366, 768], ["phone", 390, 844
     const plot = page.locator(".plot").first();
     await plot.scrollIntoViewIfNeeded();
     const box = await plot.locator(".nsewdrag").first().boundingBox();
+    const marks = await plot.locator(".scatterlayer .point").all();  // of a scatter plot; a map answers anywhere
+    const places = marks.length ? [await marks[0].boundingBox()].map((b) => [b.x + b.width / 2, b.y + b.height / 2])
+                                : [[0.5, 0.5], [0.45, 0.4], [0.55, 0.6]].map(([u, v]) => [box.x + u * box.width, box.y + v * box.height]);
     let hover = 0;
-    for (const [u, v] of [[0.5, 0.5], [0.45, 0.4], [0.55, 0.6], [0.5, 0.3]]) {
-      await page.mouse.move(box.x + u * box.width, box.y + v * box.height, {steps: 4});
-      await page.waitForTimeout(300);
+    for (const [x, y] of places) {
+      await page.mouse.move(x - 30, y - 30);
+      await page.mouse.move(x, y, {steps: 4});
+      await page.waitForTimeout(400);
       hover = await plot.locator(".hoverlayer .hovertext").count();
       if (hover > 0) break;
     }

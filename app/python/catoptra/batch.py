@@ -11,7 +11,7 @@ Lens files that a plan names must be found under the same paths on every worker 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Callable, NamedTuple, Sequence
+from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Sequence
 
 from . import _core
 
@@ -72,13 +72,17 @@ def _run_on(
     shard_cases: int,
     progress: Callable[[int, int], None] | None,
 ) -> Outcome:
-    from distributed import as_completed
+    import distributed
+
+    # Debian's distributed has no complete types.
+    untyped: Any = client
+    as_completed: Any = distributed.as_completed
 
     if shard_cases < 1:
         raise ValueError("shard_cases must be at least 1")
     shards = [lines[i : i + shard_cases] for i in range(0, len(lines), shard_cases)]
     # pure=False: the scheduler must not take two shards for one; a shard that is computed twice is stored once all the same.
-    futures = client.map(evaluate_shard, shards, pure=False, retries=RETRIES)
+    futures = untyped.map(evaluate_shard, shards, pure=False, retries=RETRIES)
     stored = failed = 0
     try:
         for future in as_completed(futures):
@@ -89,5 +93,5 @@ def _run_on(
             if progress is not None:
                 progress(stored, len(lines))
     finally:
-        client.cancel(futures)
+        untyped.cancel(futures)
     return Outcome(stored - failed, failed)

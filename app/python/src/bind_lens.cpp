@@ -123,7 +123,9 @@ void bind_evaluation(py::module_& module) {
   py::class_<app::LensReport>(module, "LensEvaluation", "What `catoptra lens evaluate` reports.")
       .def_property_readonly("points", &columns, "Columns by name, one value per point; NaN where no light gets through.")
       .def_property_readonly("reference",
-                             [](const app::LensReport& r) { return python_object(app::json_text(app::lens_report_json(r)))["reference"]; },
+                             [](const app::LensReport& r) -> py::object {
+                               return python_object(app::json_text(app::lens_report_json(r)))["reference"];
+                             },
                              "Power and prism by the focimeter at the back vertex.")
       .def_readonly("spectacle_magnification", &app::LensReport::spectacle_magnification)
       .def_readonly("warnings", &app::LensReport::warnings)
