@@ -70,6 +70,8 @@ int run_evaluate(const EvaluateOptions& options, const CommonOptions& common) {
   SceneReadOptions reading;
   reading.progress = [&](double share, std::string_view what) { progress.show(share, what); };
   const SceneFile scene = read_scene(options.scene, reading);
+  progress.clear();
+  for (const std::string& warning : scene.scene.warnings) spdlog::warn(warning);
   progress.show(-1, "evaluating");
   const MirrorEvaluation evaluation = evaluate_mirror(scene, evaluation_options(options, scene.unit_mm));
   progress.clear();

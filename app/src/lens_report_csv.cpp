@@ -1,3 +1,4 @@
+// The CSV form of lens_report.h: points, and verdicts.
 #include <array>
 #include <cstdio>
 

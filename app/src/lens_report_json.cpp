@@ -1,3 +1,4 @@
+// The JSON form of lens_report.h.
 #include <cmath>
 #include <numbers>
 

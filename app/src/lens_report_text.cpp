@@ -1,3 +1,4 @@
+// The form of lens_report.h for people.
 #include <algorithm>
 #include <array>
 #include <cmath>

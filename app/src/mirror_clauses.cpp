@@ -92,7 +92,7 @@ class Judge {
     if (const RuleFigure* f = figure("radius_deviation_max"))
       add(*f, "deviation of a reading from the mean, share of it, at most", 100 * r.worst_deviation,
           *f->value, 100 * r.worst_deviation <= *f->value);
-    if (const RuleFigure* f = figure("aspheric_radius_min"); f && e_.map.spherical_share < 0.98)
+    if (const RuleFigure* f = figure("aspheric_radius_min"); f && e_.has_aspheric_part())
       add(*f, "least radius of the aspheric part, at least", e_.map.min_mm, *f->value,
           e_.map.min_mm >= *f->value * (1 - kRadiusAccuracy));
   }

@@ -20,10 +20,6 @@ constexpr double kSpherometerBase_mm = 38;
 /// border.
 constexpr double kOutlineChord_mm = 0.005;
 
-/// Spherical parts below this share of the glass are told apart: less is the width of a cell along the
-/// border.
-constexpr double kWhollySpherical = 0.98;
-
 /// The ground on which a blind zone is looked for: a lane beside the vehicle, from the ocular points on.
 constexpr double kBlindLength_mm = 30000, kBlindWidth_mm = 4000;
 
@@ -76,7 +72,7 @@ void measure_glass(const optics::MirrorGlass& glass, const MirrorEvaluationOptio
     if (ten || three) base = *(ten ? ten : three)->value;
   }
   base = options.spherometer_base_mm.value_or(base);
-  const bool partly = e.map.spherical_share < kWhollySpherical && e.map.spherical_share > 0;
+  const bool partly = e.has_aspheric_part() && e.map.spherical_share > 0;
   const auto part = [&e](const optics::GlassPoint& p) { return optics::in_spherical_part(e.map, p); };
   e.readings = e.ten_readings ? optics::readings_fmvss(glass, base)
                               : optics::readings_r46(glass, base, partly ? optics::GlassPart(part) : nullptr);
@@ -165,7 +161,7 @@ void measure_road(const optics::MirrorGlass& glass, const optics::SightOptions& 
     if (!e.zone_required) region.cell_mm = 1000;
     e.field = optics::measure_field(sight, zone, region);
     if (e.zone_required) e.margins = margins_on_road(sight, zone, e.vehicle.far_mm);
-    if (e.zone_required && e.map.spherical_share < kWhollySpherical && e.map.spherical_share > 0) {
+    if (e.zone_required && e.has_aspheric_part() && e.map.spherical_share > 0) {
       optics::SightOptions spherical = options;
       spherical.part = [&e](const optics::GlassPoint& p) { return optics::in_spherical_part(e.map, p); };
       e.spherical_field = optics::measure_field(optics::MirrorSight(glass, spherical), zone);

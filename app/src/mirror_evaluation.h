@@ -83,6 +83,9 @@ struct MirrorEvaluation {
   std::vector<MirrorClause> clauses;
   std::vector<std::string> notes;  ///< assumptions and shortcomings, one sentence each
 
+  /// Whether a part of the glass is aspheric. Below a share of 0.98: what is less is the width of a cell of
+  /// the map along the border.
+  [[nodiscard]] bool has_aspheric_part() const { return map.spherical_share < 0.98; }
   [[nodiscard]] bool passes() const;               ///< every clause does; false without clauses
   [[nodiscard]] bool rests_on_unverified() const;  ///< some clause's limit is unverified
 };

@@ -1,3 +1,4 @@
+// The JSON form of mirror_evaluation.h.
 #include <cmath>
 #include <glm/trigonometric.hpp>
 

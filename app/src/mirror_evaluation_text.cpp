@@ -1,3 +1,4 @@
+// The form of mirror_evaluation.h for people.
 #include <array>
 #include <cmath>
 #include <cstdarg>
@@ -42,7 +43,7 @@ void add_glass(const MirrorEvaluation& e, Lines& lines) {
   lines.add("mean radius %s (%s, feet %g mm apart), principal radii %s to %s",
             in_mm(e.readings.mean_mm).c_str(), e.ten_readings ? "ten readings" : "three places",
             e.readings.base_mm, in_mm(e.map.min_mm).c_str(), in_mm(e.map.max_mm).c_str());
-  if (e.map.spherical_share < 0.98)
+  if (e.has_aspheric_part())
     lines.add("aspheric outside %.0f %% of the glass", 100 * e.map.spherical_share);
   const optics::ViewSummary& v = e.view;
   lines.add(

@@ -7,11 +7,6 @@ namespace {
 
 constexpr double kMetre_mm = 1000;
 
-bool has_quantity(const RuleFile& rule, std::string_view quantity) {
-  return std::any_of(rule.figures.begin(), rule.figures.end(),
-                     [&](const RuleFigure& figure) { return figure.quantity == quantity; });
-}
-
 double value_or(const RuleFigure& figure, const std::string& name, double otherwise) {
   const auto found = figure.values.find(name);
   return found == figure.values.end() ? otherwise : found->second;
@@ -82,12 +77,9 @@ std::vector<ZonePart> required_zone(const RuleFile& rule, const ZonePlacement& p
   return parts;
 }
 
-bool needs_side_plane(const RuleFile& rule) {
-  return has_quantity(rule, "field");
-}
-
 bool needs_median_plane(const RuleFile& rule) {
-  return has_quantity(rule, "field_across_median");
+  return std::any_of(rule.figures.begin(), rule.figures.end(),
+                     [](const RuleFigure& figure) { return figure.quantity == "field_across_median"; });
 }
 
 }  // namespace catoptra::app

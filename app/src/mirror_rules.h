@@ -31,8 +31,7 @@ struct ZonePart {
 /// catoptra::Error with the figure's line where one begins beyond its end, or beyond the cut.
 [[nodiscard]] std::vector<ZonePart> required_zone(const RuleFile& rule, const ZonePlacement& placement);
 
-/// Whether a zone of the rule refers to the vehicle's side plane, or to its median plane.
-[[nodiscard]] bool needs_side_plane(const RuleFile& rule);
+/// Whether a zone of the rule refers to the vehicle's median plane.
 [[nodiscard]] bool needs_median_plane(const RuleFile& rule);
 
 }  // namespace catoptra::app

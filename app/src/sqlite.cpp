@@ -116,10 +116,6 @@ std::string SqliteDatabase::text(const std::string& sql) {
   return statement.step() ? statement.text(0) : std::string();
 }
 
-std::int64_t SqliteDatabase::changed_rows() const {
-  return sqlite3_changes64(handle_.get());
-}
-
 SqliteStatement::SqliteStatement(SqliteDatabase& database, const std::string& sql)
     : database_(database), handle_(nullptr, sqlite3_finalize) {
   sqlite3_stmt* prepared = nullptr;

@@ -25,7 +25,6 @@ class SqliteDatabase {
   void execute(const std::string& sql);
   [[nodiscard]] std::int64_t number(const std::string& sql);
   [[nodiscard]] std::string text(const std::string& sql);
-  [[nodiscard]] std::int64_t changed_rows() const;
 
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
   /// Words the last failure: whether the disk is full, the file damaged, none of SQLite, or locked.

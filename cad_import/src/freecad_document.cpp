@@ -158,11 +158,6 @@ const std::string& FreecadObject::label_or_name() const {
   return label.empty() ? name : label;
 }
 
-const FreecadObject* FreecadDocument::find(const std::string& name) const {
-  const auto found = index_of.find(name);
-  return found == index_of.end() ? nullptr : &objects[found->second];
-}
-
 void parse_freecad_xml(const std::string& file, const std::string& entry, std::string& text,
                        pugi::xml_document& xml) {
   const pugi::xml_parse_result result = xml.load_buffer_inplace(text.data(), text.size());

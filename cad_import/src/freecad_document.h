@@ -55,7 +55,6 @@ struct FreecadDocument {
   std::unordered_map<std::string, std::size_t> index_of;  ///< by name
   bool has_gui = false;  ///< a GuiDocument.xml was there: `visible` is what the user saw
 
-  [[nodiscard]] const FreecadObject* find(const std::string& name) const;
 };
 
 /// Throws ImportError, with the entry's name, for XML that is missing or broken.

@@ -1,3 +1,4 @@
+// What an eye sees of a place on the road through the mirror: reflection point, outline, obstructions.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>

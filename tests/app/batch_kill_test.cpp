@@ -136,7 +136,6 @@ TEST(BatchKill, AKillWhileTheDatabaseIsMadeLeavesOneThatCanBeUsed) {
   const auto plan = folder.write("plan.toml", many_poses_plan(1, 20));
   const auto calm = folder / "calm.sqlite";
   ASSERT_EQ(run_catoptra({"batch", "run", plan.string(), "--db", calm.string()}).code, 0);
-  std::set<bool> made;
   for (int i = 0; i < 8; ++i) {
     const auto database = folder / ("early" + std::to_string(i) + ".sqlite");
     BatchProcess process(plan, database);
@@ -145,12 +144,10 @@ TEST(BatchKill, AKillWhileTheDatabaseIsMadeLeavesOneThatCanBeUsed) {
       std::this_thread::sleep_for(microseconds(20));
     std::this_thread::sleep_for(microseconds(i * 200));
     EXPECT_TRUE(process.kill_now());
-    made.insert(std::filesystem::exists(database) && std::filesystem::file_size(database) > 0);
     const CommandResult rest = run_catoptra({"batch", "run", plan.string(), "--db", database.string()});
     ASSERT_EQ(rest.code, 0) << rest.errors;
     EXPECT_EQ(differing_table(database, calm), "");
   }
-  EXPECT_FALSE(made.empty());
 }
 
 }  // namespace

@@ -219,7 +219,9 @@ TEST(Batch, TablesNameTheirUnitsAndReadBackExactly) {
             rows[0]["summary"]["reference_sphere_d"].get<double>());
   EXPECT_EQ(ask_sqlite(database, "SELECT count(*) FROM points WHERE end = 0"), "63");
   EXPECT_EQ(run_catoptra({"batch", "export", "--db", database.string(), "-o", "x.xlsx"}).code, 2);
-  EXPECT_EQ(run_catoptra({"batch", "report", "--db", database.string(), "-o", "-"}).output.rfind("<!doctype html>", 0), 0u);
+  EXPECT_EQ(run_catoptra({"batch", "report", "--db", database.string(), "-o", "-"})
+                .output.rfind("<!doctype html>", 0),
+            0u);
   EXPECT_EQ(run_catoptra({"batch", "run", plan.string()}).code, 2) << "--db is required";
 }
 

@@ -1,4 +1,4 @@
-# make_folder(): an empty folder for the test's files. open_report(FILE PLOTS): opens a report in the browser and checks it.
+# Begins with an empty FOLDER for the test's files. open_report(FILE PLOTS): opens a report in the browser and checks it.
 include(${SOURCE_DIR}/tests/front_door/run.cmake)
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})

@@ -1,3 +1,4 @@
+// The entry of the Python module catoptra._core.
 #include "app/python/src/bindings.h"
 #include "app/version.h"
 
