@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cad_import/lens_faces.h"
+#include "optics/dispersion.h"
 #include "optics/lens_path.h"
 #include "optics/lens_power.h"
 #include "optics/optic.h"
@@ -54,8 +55,8 @@ struct WearingPosition {
   Eye eye = Eye::right;            ///< temporal is -x for the right eye, +x for the left
 };
 
-/// The wearer's axes in model coordinates, with the lens's vertices: z straight ahead, x and y as for someone who
-/// faces the wearer. The lens's own axes where it is not tilted.
+/// The wearer's axes in model coordinates, with the lens's vertices: z straight ahead, x and y as for someone
+/// who faces the wearer. The lens's own axes where it is not tilted.
 [[nodiscard]] LensFrame wearer_frame(const LensFrame& lens, const WearingPosition& position);
 
 struct EvaluationOptions {
@@ -64,7 +65,7 @@ struct EvaluationOptions {
   /// As worn: from the front surface along the chief ray, > 0. Powers are then what the lens adds to that
   /// object's vergence (at the front surface) by the time the wave is at the vertex sphere.
   double object_distance_mm = std::numeric_limits<double>::infinity();
-  double wavelength_nm = 587.56;
+  double wavelength_nm = kLineD_nm;
   bool chromatic = true;    ///< also trace at F and C, for transverse colour
   std::size_t threads = 0;  ///< 0: all. Results do not depend on it.
 };

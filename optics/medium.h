@@ -32,6 +32,9 @@ struct Medium {
   [[nodiscard]] double index(double wavelength_nm) const { return dispersion.index(wavelength_nm); }
 };
 
+/// The line that the medium is quoted at, nm: d, or e where the source gives n_e alone (ISO 7944).
+[[nodiscard]] double reference_line_nm(const Medium& medium);
+
 /// Air and vacuum are both index 1: spectacle powers are defined in air (ISO 13666), and catalogue indices
 /// are relative to air.
 [[nodiscard]] Medium air();

@@ -7,22 +7,13 @@
 #include <ostream>
 
 #include "app/src/batch_lens_case.h"
+#include "app/src/csv_cell.h"
 
 namespace catoptra::app {
 namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::string cell(double value) {
   if (!std::isfinite(value)) return {};
@@ -35,9 +26,9 @@ std::string cell(double value) {
 std::string cell(const json& inputs, const std::string& name) {
   const auto found = inputs.find(name);
   if (found == inputs.end() || found->is_null()) return {};
-  if (found->is_string()) return cell(found->get<std::string>());
+  if (found->is_string()) return csv_cell(found->get<std::string>());
   if (found->is_number()) return cell(found->get<double>());
-  return found->empty() ? std::string() : cell(found->dump());
+  return found->empty() ? std::string() : csv_cell(found->dump());
 }
 
 void append(std::string& row, const std::vector<std::string>& cells) {
@@ -51,8 +42,8 @@ void case_rows(BatchReader& reader, std::ostream& out) {
   out << header << '\n';
   reader.for_each_case([&](const StoredCase& stored) {
     std::string row = std::to_string(stored.position) + ',' + stored.batch_case.key + ',';
-    row += std::string(status_name(stored.status)) + ',' + cell(stored.error) + ',' +
-           cell(stored.batch_case.source);
+    row += std::string(status_name(stored.status)) + ',' + csv_cell(stored.error) + ',' +
+           csv_cell(stored.batch_case.source);
     const json inputs = json::parse(stored.batch_case.inputs);
     for (const std::string& name : lens_input_columns()) row += ',' + cell(inputs, name);
     for (std::size_t i = 0; i < batch_columns().summary.size(); ++i)

@@ -26,8 +26,7 @@ cad_import::CadModel model_of(const LensCase& lens_case, const std::string& sour
   if (lens_case.blank) {
     cad_import::LensBlank blank = *lens_case.blank;
     const optics::Medium medium = lens_case.material.medium();
-    // The reference line as in `lens make`: d, unless the material is quoted for e alone.
-    blank.index = medium.index(medium.nd == 0 && medium.ne > 0 ? optics::kLineE_nm : optics::kLineD_nm);
+    blank.index = medium.index(optics::reference_line_nm(medium));  // as `lens make`
     return cad_import::lens_model(cad_import::LensShape(blank));
   }
   if (sha256_of_file(source) != lens_case.file_sha256)

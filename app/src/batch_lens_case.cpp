@@ -4,6 +4,7 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/src/lens_front.h"
 #include "cad_import/error.h"
 
 namespace catoptra::app {
@@ -30,8 +31,6 @@ constexpr std::array<BlankNumber, 13> kBlankNumbers{
      {"center_thickness", "center_thickness_mm", nullptr, &LensBlank::center_thickness_mm},
      {"edge_thickness", "edge_thickness_mm", nullptr, &LensBlank::edge_thickness_mm},
      {"diameter", "diameter_mm", &LensBlank::diameter_mm}}};
-
-constexpr std::array<const char*, 4> kFronts{"sphere", "conic", "asphere", "freeform"};
 
 [[noreturn]] void refuse(const std::string& reason) {
   throw Error("", "case", reason, "it has to come from a plan that this version has read");
@@ -115,16 +114,6 @@ optics::EvaluationOptions LensCase::evaluation_options() const {
 
 std::span<const BlankNumber> blank_numbers() {
   return kBlankNumbers;
-}
-
-std::string_view front_name(LensFrontForm form) {
-  return kFronts[std::size_t(form)];
-}
-
-std::optional<LensFrontForm> front_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kFronts.size(); ++i)
-    if (kFronts[i] == name) return static_cast<LensFrontForm>(i);
-  return std::nullopt;
 }
 
 std::string to_inputs(const LensCase& lens_case) {

@@ -55,10 +55,6 @@ struct BlankNumber {
 };
 [[nodiscard]] std::span<const BlankNumber> blank_numbers();
 
-/// Forms of the front by name: "sphere", "conic", "asphere", "freeform".
-[[nodiscard]] std::string_view front_name(cad_import::LensFrontForm form);
-[[nodiscard]] std::optional<cad_import::LensFrontForm> front_from_name(std::string_view name);
-
 /// The canonical JSON. What has no effect is left at its default (the axis of a lens without cylinder), so
 /// that equal lenses have equal text. Throws catoptra::Error where the material is unknown.
 [[nodiscard]] std::string to_inputs(const LensCase& lens_case);

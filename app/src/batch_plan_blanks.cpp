@@ -3,13 +3,13 @@
 
 #include "app/src/batch_plan_parts.h"
 #include "app/src/batch_sweep.h"
+#include "app/src/lens_front.h"
 #include "cad_import/error.h"
 
 namespace catoptra::app {
 namespace {
 
 using cad_import::LensBlank;
-using cad_import::LensFrontForm;
 
 /// One key of the table with what it runs through.
 struct BlankSweep {
@@ -22,13 +22,6 @@ void set(LensBlank& blank, const BlankNumber& number, double value) {
     blank.*number.value = value;
   else
     blank.*number.optional_value = value;
-}
-
-/// As `lens make` chooses it where none is given.
-LensFrontForm default_front(const LensBlank& blank) {
-  if (blank.addition_d != 0) return LensFrontForm::freeform;
-  if (!blank.asphere_mm.empty()) return LensFrontForm::asphere;
-  return blank.conic != 0 ? LensFrontForm::conic : LensFrontForm::sphere;
 }
 
 struct Sample {
@@ -91,7 +84,7 @@ std::vector<LensBlank> read_blanks(const TomlTable& table) {
   if (const auto asphere = table.numbers("asphere", 0)) base.asphere_mm = *asphere;
   const auto front = table.choice("front", {"sphere", "conic", "asphere", "freeform"});
   auto blanks = sample ? sample_of(*sample, base, sweeps) : grid_of(table.file(), base, sweeps);
-  for (LensBlank& blank : blanks) blank.front = front ? *front_from_name(*front) : default_front(blank);
+  for (LensBlank& blank : blanks) blank.front = front ? *front_from_name(*front) : needed_front(blank);
   return blanks;
 }
 

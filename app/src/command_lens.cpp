@@ -5,16 +5,13 @@
 #include <optional>
 
 #include "app/src/commands.h"
+#include "app/src/lens_front.h"
 #include "app/src/output_file.h"
 #include "cad_import/lens_blank.h"
 #include "optics/medium.h"
 
 namespace catoptra::app {
 namespace {
-
-/// Where no other line is the material's reference. Source: ISO 7944.
-constexpr double kHeliumD_nm = 587.56;
-constexpr double kMercuryE_nm = 546.07;
 
 struct MakeOptions {
   cad_import::LensBlank blank;
@@ -34,18 +31,7 @@ double index_of(const MakeOptions& options) {
       throw UsageError("--material: " + error.entity() + " " + error.reason(), error.hint());
     }
   }();
-  return medium.index(medium.nd == 0 && medium.ne > 0 ? kMercuryE_nm : kHeliumD_nm);
-}
-
-/// The form asked for, or the one that the other options need.
-cad_import::LensFrontForm front_form(const MakeOptions& options) {
-  using cad_import::LensFrontForm;
-  if (options.front == "sphere") return LensFrontForm::sphere;
-  if (options.front == "conic") return LensFrontForm::conic;
-  if (options.front == "asphere") return LensFrontForm::asphere;
-  if (options.front == "freeform" || options.blank.addition_d != 0) return LensFrontForm::freeform;
-  if (!options.asphere.empty()) return LensFrontForm::asphere;
-  return options.blank.conic != 0 ? LensFrontForm::conic : LensFrontForm::sphere;
+  return medium.index(optics::reference_line_nm(medium));
 }
 
 /// Left out, the form that the other options need.
@@ -83,9 +69,9 @@ int run_make(const MakeOptions& options) {
   cad_import::LensBlank blank = options.blank;
   blank.back = back_form(options);
   blank.index = index_of(options);
-  blank.front = front_form(options);
   blank.front_curve_d = options.front_curve;
   blank.asphere_mm = options.asphere;
+  blank.front = front_from_name(options.front).value_or(needed_front(blank));
   blank.center_thickness_mm = options.center_thickness;
   blank.edge_thickness_mm = options.edge_thickness;
   blank.diameter_mm = options.diameter.value_or(blank.diameter_mm);

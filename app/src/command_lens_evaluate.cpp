@@ -13,11 +13,6 @@
 namespace catoptra::app {
 namespace {
 
-/// The d line, or the e line for a material that is quoted for it alone.
-double reference_line_nm(const optics::Medium& medium) {
-  return medium.nd == 0 && medium.ne > 0 ? optics::kLineE_nm : optics::kLineD_nm;
-}
-
 void add_map(const LensEvaluateOptions& options, const LensSource& source, LensReportOptions& report) {
   if (!options.map_step) return;
   try {
@@ -49,7 +44,7 @@ int run_evaluate(const LensEvaluateOptions& options, const CommonOptions& common
   from.progress = [&](double share, std::string_view what) { progress.show(share, what); };
   const LensSource source = load_lens(options.file, from);
   add_map(options, source, asked);
-  if (!options.wavelength) asked.evaluation.wavelength_nm = reference_line_nm(source.lens.medium);
+  if (!options.wavelength) asked.evaluation.wavelength_nm = optics::reference_line_nm(source.lens.medium);
   progress.show(-1, "measuring");
   const LensReport report = lens_report(source, asked);
   progress.clear();

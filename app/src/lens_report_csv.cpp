@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdio>
 
+#include "app/src/csv_cell.h"
 #include "app/src/lens_report_writers.h"
 
 namespace catoptra::app {
@@ -34,20 +35,9 @@ constexpr Column kColumns[] = {{"gaze_h_deg", "gaze_h_deg"},
                                {"distortion", "distortion_ratio"},
                                {"tca_d", "tca_pd"}};
 
-/// RFC 4180: quoted where it holds a comma, a quote or a line end.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string cell(const ordered_json& value) {
   if (value.is_null()) return {};
-  if (value.is_string()) return cell(value.get<std::string>());
+  if (value.is_string()) return csv_cell(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "pass" : "fail";
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.10g", value.get<double>());

@@ -37,9 +37,8 @@ std::string read_all(std::istream& stream) {
 SceneFile read_scene_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                           const SceneReadOptions& options) {
   const toml::table parsed = parse_toml(text, name);
-  const TomlTable root(
-      parsed, name, "",
-      {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar",
+  const TomlTable root(parsed, name, "",
+                       {"units", "camera", "environment", "light", "surrounding", "mirror", "lens", "planar",
                         "render", "evaluation"});
   const SceneContext context{name, folder, read_unit_mm(root), options};
 

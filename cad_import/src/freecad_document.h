@@ -54,7 +54,6 @@ struct FreecadDocument {
   std::vector<FreecadObject> objects;                     ///< in the document's order
   std::unordered_map<std::string, std::size_t> index_of;  ///< by name
   bool has_gui = false;  ///< a GuiDocument.xml was there: `visible` is what the user saw
-
 };
 
 /// Throws ImportError, with the entry's name, for XML that is missing or broken.

@@ -9,6 +9,10 @@
 
 namespace catoptra::optics {
 
+double reference_line_nm(const Medium& medium) {
+  return medium.nd == 0 && medium.ne > 0 ? kLineE_nm : kLineD_nm;
+}
+
 Medium air() {
   return {"air", Dispersion(1.0), 1, 1, 0, "by definition of ISO 13666", Certainty::verified};
 }

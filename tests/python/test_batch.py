@@ -34,7 +34,9 @@ def plan(tmp_path):
 
 
 def test_the_same_rows_as_the_program(plan, tmp_path):
-    outcome = catoptra.batch.run(plan, tmp_path / "python.sqlite")
+    told = []
+    outcome = catoptra.batch.run(plan, tmp_path / "python.sqlite", progress=lambda stored, wanted: told.append((stored, wanted)))
+    assert told == [(stored, outcome.done) for stored in range(1, outcome.done + 1)]
     assert outcome.done == len(catoptra._core.read_batch_plan(plan)) and outcome.failed == 0
     subprocess.run([os.environ["CATOPTRA_PROGRAM"], "batch", "run", plan, "--db", tmp_path / "program.sqlite"], check=True)
     assert export(tmp_path / "python.sqlite") == export(tmp_path / "program.sqlite")

@@ -26,6 +26,15 @@ def test_back_vertex_power_of_a_thick_lens():
     assert report["back_curve_d"] == pytest.approx([-3.0, -3.0], abs=0.002)
 
 
+def test_the_front_is_what_the_order_needs():
+    # As `lens make`: an addition needs a freeform front, whose power grows downwards.
+    lens = catoptra.make_lens(sphere_d=1, addition_d=2, index=1.6)
+    far, near = lens.evaluate(points_mm=[[0, 8], [0, -16]]).points["sphere_d"]
+    assert near - far > 1
+    with pytest.raises(ValueError, match="front must be"):
+        catoptra.make_lens(sphere_d=1, index=1.5, front="square")
+
+
 def test_points_are_numpy_columns_in_the_order_asked_for():
     lens = catoptra.make_lens(sphere_d=5, index=1.5)
     gaze = np.array([[0.0, 0.0], [20.0, 0.0], [0.0, -20.0]])
@@ -73,6 +82,8 @@ def test_errors_say_file_reason_and_hint(tmp_path):
         catoptra.make_lens(sphere_d=1, material="CR-38")
     with pytest.raises(ValueError, match="no default"):
         catoptra.make_lens(sphere_d=1)
+    with pytest.raises(ValueError, match="abbe belongs to index"):
+        catoptra.make_lens(sphere_d=1, material="CR-39", abbe=58)
     with pytest.raises(ValueError, match=r"\(N, 2\)"):
         catoptra.make_lens(sphere_d=1, index=1.5).evaluate(gaze_deg=[1.0, 2.0, 3.0])
 

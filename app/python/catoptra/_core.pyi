@@ -1,7 +1,7 @@
 """Types of the compiled part; see the package's own documentation."""
 
 import os
-from typing import Any, Literal, Sequence, final
+from typing import Any, Callable, Literal, Sequence, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,7 +80,7 @@ class Lens:
     def material(self) -> str: ...
     @property
     def warnings(self) -> list[str]: ...
-    def index(self, wavelength_nm: float = 587.56) -> float: ...
+    def index(self, wavelength_nm: float = 587.5618) -> float: ...
     def evaluate(
         self,
         *,
@@ -95,7 +95,7 @@ class Lens:
         wrap_deg: float = 0.0,
         eye: Literal["right", "left"] = "right",
         object_distance_mm: float = ...,
-        wavelength_nm: float = 587.56,
+        wavelength_nm: float | None = None,
         cylinder: Literal["minus", "plus"] = "minus",
         threads: int = 0,
     ) -> LensEvaluation: ...
@@ -188,7 +188,7 @@ def make_lens(
     index: float | None = None,
     abbe: float | None = None,
     front_curve_d: float | None = None,
-    front: Literal["sphere", "conic", "asphere", "freeform"] = "sphere",
+    front: Literal["sphere", "conic", "asphere", "freeform"] | None = None,
     conic: float = 0.0,
     asphere_mm: Sequence[float] = ...,
     back_conic: float = 0.0,
@@ -211,4 +211,9 @@ def make_mirror(
 def evaluate_mirror(scene: Scene, *, mirror: str = "", rule: str = "", eye_mm: _Vector | None = None) -> dict[str, Any]: ...
 def read_batch_plan(file: _Path) -> BatchPlan: ...
 def evaluate_batch_case(line: str) -> str: ...
-def run_batch_here(plan: BatchPlan, store: BatchStore, jobs: int = 0) -> tuple[int, int]: ...
+def run_batch_here(
+    plan: BatchPlan,
+    store: BatchStore,
+    jobs: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> tuple[int, int]: ...

@@ -61,7 +61,7 @@ def run(
     store = _core.BatchStore(database)
     store.add(read)
     if client is None:
-        return Outcome(*_core.run_batch_here(read, store, jobs))
+        return Outcome(*_core.run_batch_here(read, store, jobs, progress))
     return _run_on(client, store, store.pending(read), shard_cases, progress)
 
 

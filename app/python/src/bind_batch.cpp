@@ -1,7 +1,9 @@
 // Batches: plans, cases as lines of JSON, and the database.
+#include <pybind11/functional.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <functional>
 #include <memory>
 
 #include "app/batch.h"
@@ -15,50 +17,63 @@ void bind_batch(py::module_& module) {
       .def_readonly("file", &app::BatchPlan::file)
       .def_readonly("repeated", &app::BatchPlan::repeated)
       .def("__len__", [](const app::BatchPlan& plan) { return plan.cases.size(); });
-  module.def("read_batch_plan",
-             [](const std::filesystem::path& file) {
-               const py::gil_scoped_release release;
-               return app::read_batch_plan(file);
-             },
-             py::arg("file"), "Reads a plan (TOML) and hashes every lens file that it names.");
-  module.def("evaluate_batch_case",
-             [](const std::string& line) {
-               const py::gil_scoped_release release;
-               return app::evaluate_case(line);
-             },
-             py::arg("line"), "Computes one case: from its line of JSON to the result's. A pure function.");
-  py::class_<app::BatchStore>(module, "BatchStore", "The database of a batch, open for writing by this process alone.")
-      .def(py::init([](const std::filesystem::path& file) { return std::make_unique<app::BatchStore>(file); }), py::arg("file"))
-      .def("add",
-           [](app::BatchStore& store, const app::BatchPlan& plan) {
-             const py::gil_scoped_release release;
-             return store.add(plan);
-           },
-           py::arg("plan"), "Enters the cases that are not there yet; returns how many.")
-      .def("pending",
-           [](app::BatchStore& store, const app::BatchPlan& plan) {
-             const py::gil_scoped_release release;
-             std::vector<std::string> lines;
-             for (const app::BatchCase& batch_case : store.pending(plan)) lines.push_back(app::to_json(batch_case));
-             return lines;
-           },
-           py::arg("plan"), "The plan's cases without result or error yet, as lines of JSON.")
-      .def("put",
-           [](app::BatchStore& store, const std::string& line) {
-             const py::gil_scoped_release release;
-             store.put(app::result_from_json(line));
-           },
-           py::arg("line"), "Stores a result in one transaction; one that is there already stays.");
-  module.def("run_batch_here",
-             [](const app::BatchPlan& plan, app::BatchStore& store, std::size_t jobs) {
-               const py::gil_scoped_release release;
-               app::BatchRunOptions options;
-               options.jobs = jobs;
-               const app::BatchProgress ran = app::run_batch(plan, store, options);
-               return std::pair(ran.done, ran.failed);
-             },
-             py::arg("plan"), py::arg("store"), py::arg("jobs") = 0,
-             "Computes what is pending on this machine's cores; returns how many were done and how many failed.");
+  module.def(
+      "read_batch_plan",
+      [](const std::filesystem::path& file) {
+        const py::gil_scoped_release release;
+        return app::read_batch_plan(file);
+      },
+      py::arg("file"), "Reads a plan (TOML) and hashes every lens file that it names.");
+  module.def(
+      "evaluate_batch_case",
+      [](const std::string& line) {
+        const py::gil_scoped_release release;
+        return app::evaluate_case(line);
+      },
+      py::arg("line"), "Computes one case: from its line of JSON to the result's. A pure function.");
+  py::class_<app::BatchStore>(module, "BatchStore",
+                              "The database of a batch, open for writing by this process alone.")
+      .def(
+          py::init([](const std::filesystem::path& file) { return std::make_unique<app::BatchStore>(file); }),
+          py::arg("file"))
+      .def(
+          "add",
+          [](app::BatchStore& store, const app::BatchPlan& plan) {
+            const py::gil_scoped_release release;
+            return store.add(plan);
+          },
+          py::arg("plan"), "Enters the cases that are not there yet; returns how many.")
+      .def(
+          "pending",
+          [](app::BatchStore& store, const app::BatchPlan& plan) {
+            const py::gil_scoped_release release;
+            std::vector<std::string> lines;
+            for (const app::BatchCase& batch_case : store.pending(plan))
+              lines.push_back(app::to_json(batch_case));
+            return lines;
+          },
+          py::arg("plan"), "The plan's cases without result or error yet, as lines of JSON.")
+      .def(
+          "put",
+          [](app::BatchStore& store, const std::string& line) {
+            const py::gil_scoped_release release;
+            store.put(app::result_from_json(line));
+          },
+          py::arg("line"), "Stores a result in one transaction; one that is there already stays.");
+  module.def(
+      "run_batch_here",
+      [](const app::BatchPlan& plan, app::BatchStore& store, std::size_t jobs,
+         const std::function<void(std::size_t, std::size_t)>& progress) {
+        const py::gil_scoped_release release;
+        app::BatchRunOptions options;
+        options.jobs = jobs;
+        if (progress)
+          options.progress = [&](const app::BatchProgress& p) { progress(p.done + p.failed, p.wanted); };
+        const app::BatchProgress ran = app::run_batch(plan, store, options);
+        return std::pair(ran.done, ran.failed);
+      },
+      py::arg("plan"), py::arg("store"), py::arg("jobs") = 0, py::arg("progress") = py::none(),
+      "Computes what is pending on this machine's cores; returns how many were done and how many failed.");
 }
 
 }  // namespace catoptra::python

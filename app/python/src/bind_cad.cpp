@@ -48,27 +48,32 @@ void bind_face(py::module_& module) {
       .def_readonly("body", &Face::body)
       .def_readonly("area_mm2", &Face::area_mm2)
       .def_readonly("planar", &Face::planar)
-      .def_property_readonly("domain",
-                             [](const Face& face) {
-                               const auto d = face.surface->domain();
-                               return py::make_tuple(d.u_min, d.u_max, d.v_min, d.v_max);
-                             },
-                             "(u_min, u_max, v_min, v_max)")
-      .def("points",
-           [](const Face& face, const Doubles& uv) {
-             return at_parameters(face, uv, [](const auto& s, glm::dvec2 p) { return s.point(p.x, p.y); });
-           },
-           py::arg("uv"), "Points at parameters of shape (N, 2); shape (N, 3), mm.")
-      .def("normals",
-           [](const Face& face, const Doubles& uv) {
-             return at_parameters(face, uv, [](const auto& s, glm::dvec2 p) { return s.unit_normal(p.x, p.y); });
-           },
-           py::arg("uv"), "Unit normals out of the material; shape (N, 3).")
+      .def_property_readonly(
+          "domain",
+          [](const Face& face) {
+            const auto d = face.surface->domain();
+            return py::make_tuple(d.u_min, d.u_max, d.v_min, d.v_max);
+          },
+          "(u_min, u_max, v_min, v_max)")
+      .def(
+          "points",
+          [](const Face& face, const Doubles& uv) {
+            return at_parameters(face, uv, [](const auto& s, glm::dvec2 p) { return s.point(p.x, p.y); });
+          },
+          py::arg("uv"), "Points at parameters of shape (N, 2); shape (N, 3), mm.")
+      .def(
+          "normals",
+          [](const Face& face, const Doubles& uv) {
+            return at_parameters(face, uv,
+                                 [](const auto& s, glm::dvec2 p) { return s.unit_normal(p.x, p.y); });
+          },
+          py::arg("uv"), "Unit normals out of the material; shape (N, 3).")
       .def("curvatures", &curvatures, py::arg("uv"),
            "Principal curvatures k1 >= k2, positive where convex as seen from outside; shape (N, 2), 1/mm.")
-      .def("contains",
-           [](const Face& face, double u, double v) { return !face.trim || face.trim->contains(u, v); },
-           py::arg("u"), py::arg("v"), "Whether (u, v) lies in the trimmed face.");
+      .def(
+          "contains",
+          [](const Face& face, double u, double v) { return !face.trim || face.trim->contains(u, v); },
+          py::arg("u"), py::arg("v"), "Whether (u, v) lies in the trimmed face.");
 }
 
 }  // namespace
@@ -81,19 +86,20 @@ void bind_cad(py::module_& module) {
       .def_readonly("unit", &CadModel::unit)
       .def_readonly("warnings", &CadModel::warnings)
       .def_property_readonly("faces", [](const CadModel& model) { return model.faces; })
-      .def_property_readonly("bodies",
-                             [](const CadModel& model) {
-                               py::list bodies;
-                               for (const auto& body : model.bodies) {
-                                 py::dict entry;
-                                 entry["name"] = body.name;
-                                 entry["solid"] = body.solid;
-                                 entry["faces"] = body.faces;
-                                 bodies.append(entry);
-                               }
-                               return bodies;
-                             },
-                             "Dictionaries with name, solid and faces (indices).")
+      .def_property_readonly(
+          "bodies",
+          [](const CadModel& model) {
+            py::list bodies;
+            for (const auto& body : model.bodies) {
+              py::dict entry;
+              entry["name"] = body.name;
+              entry["solid"] = body.solid;
+              entry["faces"] = body.faces;
+              bodies.append(entry);
+            }
+            return bodies;
+          },
+          "Dictionaries with name, solid and faces (indices).")
       .def_property_readonly("bounding_box_mm", [](const CadModel& model) {
         return py::make_tuple(tuple_of(model.bounds.min), tuple_of(model.bounds.max));
       });

@@ -6,7 +6,6 @@ namespace catoptra::python {
 namespace py = pybind11;
 namespace {
 
-
 void raise(const py::object& type, const Error& error) {
   py::object exception = type(error.what());
   exception.attr("file") = error.file();
@@ -26,10 +25,11 @@ void bind_errors(py::module_& module) {
     return type;
   };
   static py::object* const error = new py::object(
-      make("Error", "Bad input or a failed operation. Attributes: file, entity, reason, hint (strings, may be empty).",
+      make("Error",
+           "Bad input or a failed operation. Attributes: file, entity, reason, hint (strings, may be empty).",
            PyExc_RuntimeError));
-  static py::object* const import_error = new py::object(
-      make("ImportError", "A CAD or mesh file that cannot be read, or does not hold what was asked for.", *error));
+  static py::object* const import_error = new py::object(make(
+      "ImportError", "A CAD or mesh file that cannot be read, or does not hold what was asked for.", *error));
   static py::object* const cancelled = new py::object(make("Cancelled", "Somebody asked to stop.", *error));
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <memory>
 #include <mutex>
 
@@ -69,20 +70,27 @@ glm::dvec3 vector_of(const std::array<double, 3>& v) {
 }
 
 void bind_picture(py::module_& module) {
-  py::class_<Picture>(module, "Picture",
-                      "A rendered picture, top row first. Geometry layers are None unless they were asked for.")
-      .def_property_readonly("color", [](const Picture& p) { return layer(p.result.frame, p.result.frame.color, 3); },
-                             "Linear RGB, float32, shape (height, width, 3).")
-      .def_property_readonly("srgb", [](const Picture& p) { return srgb(p.result.frame); },
-                             "sRGB, uint8, shape (height, width, 3).")
-      .def_property_readonly("position", [](const Picture& p) { return layer(p.result.frame, p.result.frame.position, 4); },
-                             "World point shown, mm, with w = 1; a direction with w = 0 for the sky.")
-      .def_property_readonly("surface", [](const Picture& p) { return layer(p.result.frame, p.result.frame.surface, 3); },
-                             "Last point on the optic, mm.")
-      .def_property_readonly("direction", [](const Picture& p) { return layer(p.result.frame, p.result.frame.direction, 3); },
-                             "Unit direction in which the ray leaves the optic.")
-      .def_property_readonly("optic_id", [](const Picture& p) { return optic_ids(p.result.frame); },
-                             "Index of the optic shown, -1 where there is none; int32, shape (height, width).")
+  py::class_<Picture>(
+      module, "Picture",
+      "A rendered picture, top row first. Geometry layers are None unless they were asked for.")
+      .def_property_readonly(
+          "color", [](const Picture& p) { return layer(p.result.frame, p.result.frame.color, 3); },
+          "Linear RGB, float32, shape (height, width, 3).")
+      .def_property_readonly(
+          "srgb", [](const Picture& p) { return srgb(p.result.frame); },
+          "sRGB, uint8, shape (height, width, 3).")
+      .def_property_readonly(
+          "position", [](const Picture& p) { return layer(p.result.frame, p.result.frame.position, 4); },
+          "World point shown, mm, with w = 1; a direction with w = 0 for the sky.")
+      .def_property_readonly(
+          "surface", [](const Picture& p) { return layer(p.result.frame, p.result.frame.surface, 3); },
+          "Last point on the optic, mm.")
+      .def_property_readonly(
+          "direction", [](const Picture& p) { return layer(p.result.frame, p.result.frame.direction, 3); },
+          "Unit direction in which the ray leaves the optic.")
+      .def_property_readonly(
+          "optic_id", [](const Picture& p) { return optic_ids(p.result.frame); },
+          "Index of the optic shown, -1 where there is none; int32, shape (height, width).")
       .def_property_readonly("time_ms", [](const Picture& p) { return p.result.stats.time_ms; })
       .def_property_readonly("rays", [](const Picture& p) { return p.result.stats.rays; })
       .def_property_readonly("warnings", [](const Picture& p) { return p.result.warnings; });
@@ -92,28 +100,34 @@ void bind_picture(py::module_& module) {
 
 void bind_render(py::module_& module) {
   bind_picture(module);
-  py::class_<SceneHandle, std::shared_ptr<SceneHandle>>(module, "Scene", "A scene file, read with all that it names.")
+  py::class_<SceneHandle, std::shared_ptr<SceneHandle>>(module, "Scene",
+                                                        "A scene file, read with all that it names.")
       .def(py::init([](const std::filesystem::path& file) {
              const py::gil_scoped_release release;
              return SceneHandle::read(file);
            }),
            py::arg("file"))
-      .def_property_readonly("mirrors", [](const SceneHandle& s) { return s.names(optics::OpticKind::mirror); })
+      .def_property_readonly("mirrors",
+                             [](const SceneHandle& s) { return s.names(optics::OpticKind::mirror); })
       .def_property_readonly("lenses", [](const SceneHandle& s) { return s.names(optics::OpticKind::lens); })
       .def_property_readonly("warnings", [](const SceneHandle& s) { return s.file.scene.warnings; })
-      .def("look",
-           [](SceneHandle& s, const std::optional<std::array<double, 3>>& eye, const std::optional<std::array<double, 3>>& target,
-              const std::optional<std::array<double, 3>>& up, const std::optional<double>& fov_deg) {
-             const std::lock_guard lock(s.mutex);
-             if (eye) s.camera.eye_mm = vector_of(*eye);
-             if (target) s.camera.target_mm = vector_of(*target);
-             if (up) s.camera.up = vector_of(*up);
-             if (fov_deg) s.camera.fov_rad = *fov_deg * 0.017453292519943295;
-           },
-           py::kw_only(), py::arg("eye_mm") = py::none(), py::arg("target_mm") = py::none(), py::arg("up") = py::none(),
-           py::arg("fov_deg") = py::none(), "Moves the camera for the pictures that follow; what is left out stays.")
-      .def("render", &draw, py::kw_only(), py::arg("mode") = "pvrr", py::arg("resolution") = py::none(), py::arg("samples") = 1,
-           py::arg("geometry") = false, py::arg("threads") = 0,
+      .def(
+          "look",
+          [](SceneHandle& s, const std::optional<std::array<double, 3>>& eye,
+             const std::optional<std::array<double, 3>>& target,
+             const std::optional<std::array<double, 3>>& up, const std::optional<double>& fov_deg) {
+            const py::gil_scoped_release release;  // a picture may be in the making
+            const std::lock_guard lock(s.mutex);
+            if (eye) s.camera.eye_mm = vector_of(*eye);
+            if (target) s.camera.target_mm = vector_of(*target);
+            if (up) s.camera.up = vector_of(*up);
+            if (fov_deg) s.camera.fov_rad = glm::radians(*fov_deg);
+          },
+          py::kw_only(), py::arg("eye_mm") = py::none(), py::arg("target_mm") = py::none(),
+          py::arg("up") = py::none(), py::arg("fov_deg") = py::none(),
+          "Moves the camera for the pictures that follow; what is left out stays.")
+      .def("render", &draw, py::kw_only(), py::arg("mode") = "pvrr", py::arg("resolution") = py::none(),
+           py::arg("samples") = 1, py::arg("geometry") = false, py::arg("threads") = 0,
            "Draws a picture; resolution is (width, height). Other threads of Python run meanwhile.");
 }
 

@@ -15,7 +15,7 @@ namespace catoptra::python {
 /// Neither copied nor moved: the renderer refers to the scene.
 struct SceneHandle {
   app::SceneFile file;
-  render::Camera camera;  ///< of the next picture
+  render::Camera camera;                       ///< of the next picture
   std::unique_ptr<render::Renderer> renderer;  ///< made with the first picture
   std::mutex mutex;
 
