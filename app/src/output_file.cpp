@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstdio>
 #include <fstream>
@@ -65,8 +66,10 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 }
 
 std::string png_bytes(const render::Frame& frame) {
-  const TemporaryFile temporary{std::filesystem::temp_directory_path() /
-                                ("catoptra" + std::to_string(getpid()) + ".png")};
+  static std::atomic<unsigned> made = 0;  // several threads may be at it (Lens.picture_png in Python)
+  const TemporaryFile temporary{
+      std::filesystem::temp_directory_path() /
+      ("catoptra" + std::to_string(getpid()) + "_" + std::to_string(made++) + ".png")};
   render::write_image(frame, temporary.path);
   std::ifstream stream(temporary.path, std::ios::binary);
   return std::string(std::istreambuf_iterator<char>(stream), {});
