@@ -33,7 +33,7 @@ cad_import::CadModel model_of(const LensCase& lens_case, const std::string& sour
     throw Error(source, "file", "is no longer what the plan was made from",
                 "run the batch again with the plan");
   if (!cad_import::is_cad(cad_import::sniff_format(source)))
-    throw Error(source, "file", "has no exact surfaces", "give STEP, IGES or BREP files");
+    throw Error(source, "file", "has no exact surfaces", "give STEP, IGES, BREP or FreeCAD files");
   return cad_import::import_cad(source);
 }
 

@@ -34,7 +34,8 @@ void write_results(const LensReport& report, const LensSource& source, const Len
     if (!limits.empty()) write_text(beside, limits);
   }
   if (!options.html.empty()) write_text(options.html, lens_page(report, source));
-  if (options.json != "-" && options.csv != "-" && options.html != "-") write_text("-", lens_report_text(report));
+  if (options.json != "-" && options.csv != "-" && options.html != "-")
+    write_text("-", lens_report_text(report));
 }
 
 int run_evaluate(const LensEvaluateOptions& options, const CommonOptions& common) {
@@ -59,7 +60,7 @@ void add_source_options(CLI::App& app, LensEvaluateOptions& options) {
     return app.add_option(name, value, text)->option_text(shown)->group("The lens");
   };
   app.add_option("FILE", options.file,
-                 "Lens (STEP, IGES, BREP) or scene (TOML; - reads one from standard input)")
+                 "Lens (STEP, IGES, BREP, FreeCAD) or scene (TOML; - reads one from standard input)")
       ->required();
   add("--lens", options.lens, "Of the lenses in a scene, or body of a CAD file that is the lens", "NAME");
   add("--index", options.index, "Refractive index at the wavelength, in place of --material", "N");

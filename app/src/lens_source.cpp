@@ -142,7 +142,7 @@ LensSource load_lens(const std::filesystem::path& file, const LensSourceOptions&
   if (is_scene_file(file)) return lens_of_scene(file, options);
   if (!cad_import::is_cad(cad_import::sniff_format(file)))
     throw Error(file.string(), "", "a lens needs exact surfaces, and this file has none",
-                "give a STEP, IGES or BREP file, or a scene (.toml)");
+                "give a STEP, IGES, BREP or FreeCAD file, or a scene (.toml)");
   cad_import::ImportOptions importing;
   importing.unit = options.unit;
   importing.progress = options.progress;
