@@ -13,7 +13,9 @@ struct BatchReportOptions {
   std::size_t maps = 100;   ///< done cases whose maps can be looked at
 };
 
-/// Summary, failures, quantities against each other, every case in a table, and maps of single lenses. Throws catoptra::Error.
-[[nodiscard]] std::string batch_page(BatchReader& reader, const std::string& name, const BatchReportOptions& options = {});
+/// Summary, failures, quantities against each other, every case in a table, and maps of single lenses. Throws
+/// catoptra::Error.
+[[nodiscard]] std::string batch_page(BatchReader& reader, const std::string& name,
+                                     const BatchReportOptions& options = {});
 
 }  // namespace catoptra::app

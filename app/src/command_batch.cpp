@@ -158,7 +158,8 @@ int run_report(const ReportOptions& options) {
   BatchReportOptions report;
   report.rows = std::size_t(options.rows);
   report.maps = std::size_t(options.maps);
-  write_text(options.output, batch_page(reader, std::filesystem::path(options.database).filename().string(), report));
+  write_text(options.output,
+             batch_page(reader, std::filesystem::path(options.database).filename().string(), report));
   return kExitDone;
 }
 
@@ -205,8 +206,8 @@ std::vector<Command> add_batch_commands(CLI::App& root, CommonOptions& common) {
                 "One row per point of the lenses; in JSON the points within the cases");
 
   auto reporting = std::make_shared<ReportOptions>();
-  CLI::App* report = add_subcommand(*batch, common, "report",
-                                    "Write a page with summary, plots, maps and all cases, to open in a browser");
+  CLI::App* report = add_subcommand(
+      *batch, common, "report", "Write a page with summary, plots, maps and all cases, to open in a browser");
   add_database(*report, reporting->database, true);
   report->add_option("-o,--output", reporting->output, "Page to write; - : standard output")
       ->required()

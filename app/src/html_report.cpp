@@ -31,7 +31,8 @@ void replace_once(std::string& text, std::string_view mark, std::string_view by)
 }  // namespace
 
 std::string html_report(const HtmlPage& page) {
-  nlohmann::ordered_json data{{"title", page.title}, {"summary", page.summary}, {"versions", versions_json()}};
+  nlohmann::ordered_json data{
+      {"title", page.title}, {"summary", page.summary}, {"versions", versions_json()}};
   data["versions"]["plotly"] = plotly_version();
   data["inputs"] = page.inputs;
   if (!page.batch.is_null()) data["batch"] = page.batch;
@@ -53,13 +54,16 @@ std::string html_report(const HtmlPage& page) {
 }
 
 std::string data_address(std::string_view bytes, std::string_view media_type) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // RFC 4648
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // RFC 4648
   std::string text = "data:" + std::string(media_type) + ";base64,";
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? std::uint32_t(static_cast<unsigned char>(bytes[i + k])) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+      group =
+          group << 8 | (i + k < bytes.size() ? std::uint32_t(static_cast<unsigned char>(bytes[i + k])) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }

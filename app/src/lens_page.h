@@ -7,7 +7,8 @@
 
 namespace catoptra::app {
 
-/// `report` was measured on `source`, which is also drawn as its wearer sees through it. Throws catoptra::Error.
+/// `report` was measured on `source`, which is also drawn as its wearer sees through it. Throws
+/// catoptra::Error.
 [[nodiscard]] std::string lens_page(const LensReport& report, const LensSource& source);
 
 }  // namespace catoptra::app

@@ -56,7 +56,7 @@ class Wall {
 /// Lines at multiples of `grid_deg`, equally far apart on the wall as the first two are.
 cad_import::TriangleMesh grid_wall(const optics::LensFrame& wearer, const glm::dvec3& eye_mm,
                                    const LensPictureOptions& options) {
-  constexpr int kLines = 24;         // to each side: beyond the picture's border through strong plus lenses
+  constexpr int kLines = 24;  // to each side: beyond the picture's border through strong plus lenses
   constexpr double kLineWidth = 0.06, kAxisWidth = 0.1;  // of the distance between lines
   const double step = options.wall_mm * std::tan(glm::radians(options.grid_deg)), reach = (kLines + 1) * step;
   Wall wall(wearer, eye_mm, options.wall_mm);
