@@ -21,6 +21,8 @@ struct Frame {
   std::vector<glm::vec3> surface;      ///< last point on the optic, mm
   std::vector<glm::vec3> direction;    ///< unit outgoing direction of the exact ray where the mode knows it
   std::vector<std::int32_t> optic_id;  ///< index in Scene::optics; -1: no optic
+
+  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where the pixel was found wrong and traced
 };
 
 struct PatchStats {
@@ -37,10 +39,12 @@ struct OpticStats {
   std::size_t scene_rays =
       0;  ///< mode pvrr: sent into the scene from there, which kept rays are too where the optic moves
   std::vector<PatchStats> patches;
+  /// Mode exact: pixels that show the optic in any sample, and those of them that were traced anew.
+  std::size_t shown_pixels = 0, retraced_pixels = 0;
 };
 
-/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "readback", "raster", "map" as
-/// they apply.
+/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "retrace", "readback",
+/// "raster", "map" as they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;
   std::map<std::string, double> time_ms;

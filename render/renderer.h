@@ -12,7 +12,7 @@
 
 namespace catoptra::render {
 
-enum class Mode { pvrr, hybrid, raytrace, cubemap };
+enum class Mode { pvrr, hybrid, exact, raytrace, cubemap };
 
 [[nodiscard]] std::string_view mode_name(Mode mode);
 [[nodiscard]] std::optional<Mode> mode_from_name(std::string_view name);
@@ -40,9 +40,9 @@ class Renderer {
   /// Moves optic `index` rigidly: `placement` takes it from where the scene has it (not from where it was put
   /// last) to where it is from now on; nothing of it is built anew, and the scene stays as it is. Where the
   /// camera comes along, as with spectacles on a nose, mode pvrr keeps the rays of its vertices
-  /// (FrameOptions::reuse_static); modes hybrid and raytrace set up the exact surface again, and keep a copy
-  /// of the scene from the first such picture on. Throws catoptra::Error where `placement` scales, shears or
-  /// mirrors.
+  /// (FrameOptions::reuse_static); modes hybrid, exact and raytrace set up the exact surface again, and keep
+  /// a copy of the scene from the first such picture on. Throws catoptra::Error where `placement` scales,
+  /// shears or mirrors.
   void place_optic(std::size_t index, const glm::dmat4& placement);
 
  private:

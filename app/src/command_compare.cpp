@@ -29,6 +29,7 @@ struct CompareOptions {
 struct ModeResult {
   render::Mode mode;
   render::Comparison comparison;
+  std::vector<double> retraced;  ///< fraction of each optic's pixels
   FrameTiming timing;
   nlohmann::ordered_json json;
 };
@@ -38,6 +39,15 @@ FrameTiming time_mode(Session& session, render::Mode mode, int frames) {
                      session.progress);
 }
 
+std::vector<double> retraced_fractions(const render::Scene& scene, render::Mode mode,
+                                       const render::FrameStats& stats) {
+  std::vector<double> fractions;
+  for (std::size_t i = 0; i < scene.optics.size(); ++i)
+    fractions.push_back(
+        retraced_fraction(mode, i < stats.optics.size() ? stats.optics[i] : render::OpticStats{}));
+  return fractions;
+}
+
 ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame& reference,
                         const CompareOptions& options) {
   render::FrameOptions frame_options = session.frame;
@@ -45,6 +55,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   const render::RenderResult result = session.render(mode, frame_options);
   ModeResult compared{mode,
                       render::compare(reference, result.frame, session.scene()),
+                      retraced_fractions(session.scene(), mode, result.stats),
                       time_mode(session, mode, options.frames),
                       {}};
   const std::string name(render::mode_name(mode));
@@ -60,13 +71,17 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
 }
 
 void print_row(const char* mode, const std::string& optic, const render::OpticError* error,
-               const render::ImageError* image, double ms) {
+               const double* retraced, const render::ImageError* image, double ms) {
   std::printf("%-9s %-20.20s", mode, optic.c_str());
   if (error)
     std::printf(" %8zu %9.4g %9.4g %9.4g %9.4g %8.3g", error->pixels, error->arcmin.median, error->arcmin.p99,
                 error->arcmin.p999, error->arcmin.max, error->screen_px.p99);
   else
     std::printf(" %8s %9s %9s %9s %9s %8s", "-", "-", "-", "-", "-", "-");
+  if (retraced)
+    std::printf(" %9.2f", 100 * *retraced);
+  else
+    std::printf(" %9s", "-");
   if (image)
     std::printf(" %7.2f %7.4f", std::min(image->psnr_db, kIdenticalPsnr_db), image->flip_mean);
   else
@@ -75,19 +90,21 @@ void print_row(const char* mode, const std::string& optic, const render::OpticEr
 }
 
 void print_table(const Session& session, const std::vector<ModeResult>& results, double raytrace_ms) {
-  std::printf("%-9s %-20s %8s %9s %9s %9s %9s %8s %7s %7s %9s\n", "mode", "optic", "pixels", "median'",
-              "p99'", "p999'", "max'", "p99 px", "PSNR dB", "FLIP", "frame ms");
+  std::printf("%-9s %-20s %8s %9s %9s %9s %9s %8s %9s %7s %7s %9s\n", "mode", "optic", "pixels", "median'",
+              "p99'", "p999'", "max'", "p99 px", "retr. %", "PSNR dB", "FLIP", "frame ms");
   for (const ModeResult& result : results) {
     const std::string name(render::mode_name(result.mode));
     const auto& optics = result.comparison.optics;
     if (optics.empty())
-      print_row(name.c_str(), "", nullptr, &result.comparison.image, result.timing.median_ms());
+      print_row(name.c_str(), "", nullptr, nullptr, &result.comparison.image, result.timing.median_ms());
     for (std::size_t i = 0; i < optics.size(); ++i)
-      print_row(name.c_str(), session.scene().optics[i].name, &optics[i], &result.comparison.image,
-                result.timing.median_ms());
+      print_row(name.c_str(), session.scene().optics[i].name, &optics[i], &result.retraced[i],
+                &result.comparison.image, result.timing.median_ms());
   }
-  print_row("raytrace", "(the reference)", nullptr, nullptr, raytrace_ms);
-  std::printf("(' = arcmin at the optic between the exact direction and what is shown)\n");
+  print_row("raytrace", "(the reference)", nullptr, nullptr, nullptr, raytrace_ms);
+  std::printf(
+      "(' = arcmin at the optic between the exact direction and what is shown; retr.: share of the optic's "
+      "pixels that are traced)\n");
 }
 
 /// Optics of which the reference shows no pixel, so that their errors are those of nothing.

@@ -35,9 +35,13 @@ ordered_json quantiles_json(const render::ErrorQuantiles& q) {
   return {{"median", q.median}, {"p99", q.p99}, {"p999", q.p999}, {"max", q.max}};
 }
 
+double retraced_fraction(render::Mode mode, const render::OpticStats& optic) {
+  if (mode == render::Mode::hybrid || mode == render::Mode::raytrace) return 1;
+  return optic.shown_pixels ? double(optic.retraced_pixels) / double(optic.shown_pixels) : 0;
+}
+
 ordered_json optics_json(const render::Scene& scene, render::Mode mode, const render::FrameStats& stats,
                          const std::vector<render::OpticError>* errors) {
-  const bool exact = mode == render::Mode::hybrid || mode == render::Mode::raytrace;
   ordered_json entries = ordered_json::array();
   for (std::size_t i = 0; i < scene.optics.size(); ++i) {
     const optics::Optic& optic = scene.optics[i];
@@ -54,7 +58,7 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
       entry["error_arcmin"] = quantiles_json(errors->at(i).arcmin);
       entry["error_px"] = quantiles_json(errors->at(i).screen_px);
     }
-    entry["retraced_fraction"] = exact ? 1.0 : 0.0;
+    entry["retraced_fraction"] = retraced_fraction(mode, told);
     entries.push_back(std::move(entry));
   }
   return entries;

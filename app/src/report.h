@@ -16,6 +16,10 @@ inline constexpr double kIdenticalPsnr_db = 200;
 
 [[nodiscard]] nlohmann::ordered_json quantiles_json(const render::ErrorQuantiles& quantiles);
 
+/// Share of the optic's pixels that exact rays give: 1 where the mode traces all, 0 where it traces none.
+/// `optic`: what the frame tells of it.
+[[nodiscard]] double retraced_fraction(render::Mode mode, const render::OpticStats& optic);
+
 /// One entry per optic of the scene. `stats`: what the frame tells of its optics (a mode that treats no optic
 /// apart tells nothing). `errors` adds pixels and errors and may be null. `mode` tells which share of the
 /// optic's pixels is traced exactly.

@@ -17,7 +17,7 @@ bool meets_exit() { return gl_FrontFacing && textureLod(exit_mask, v_mask, 0.0).
 vec3 transmitted(bool passes, int k, vec3 seen) { return weight[k] * (passes ? v_exit.w * seen : blocked_color); }
 
 #ifdef GEOMETRY
-/// `shown`: by the reference wavelength, which is the first.
+/// `shown`: by one wavelength, in pictures the reference wavelength, which is the first.
 void write_lens_geometry(bool passes, vec4 shown) {
   // Where nothing is seen through it, the lens counts as a body like any other.
   out_position = passes ? shown : vec4(v_relative + origin.xyz, 1.0);

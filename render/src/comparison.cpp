@@ -2,21 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <numeric>
-#include <optional>
 #include <string>
 
 #include "cad_import/error.h"
 #include "render/image_io.h"
 #include "render/src/flip.h"
+#include "render/src/pixel_error.h"
 
 namespace catoptra::render {
 namespace {
-
-constexpr double kArcminPerRad = 60 * 180 / std::numbers::pi;
 
 void check_sizes(const Frame& reference, const Frame& frame) {
   if (reference.width == frame.width && reference.height == frame.height &&
@@ -35,75 +31,6 @@ void check_geometry(const Frame& frame, const char* which) {
     return;
   throw Error("", "comparison", std::string("the ") + which + " has no geometry",
               "render it with FrameOptions::geometry");
-}
-
-/// Whether `frame` shows something at pixel `i` that lies so near to the optic that rounding alone turns the
-/// direction to it by an arcminute: two points, each coordinate off by half a unit in the last place.
-bool touches(const Frame& reference, const Frame& frame, std::size_t i) {
-  const glm::vec4& shown = frame.position[i];
-  if (shown.w == 0) return false;
-  const glm::dvec3 surface(reference.surface[i]), point(shown);
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(surface[k]), std::abs(point[k])});
-  const double rounding_mm = std::sqrt(3.0) * largest * std::numeric_limits<float>::epsilon();
-  return glm::distance(surface, point) < rounding_mm * kArcminPerRad;
-}
-
-/// Both pictures show what touches the optic: see OpticError::touching_pixels.
-bool both_touch(const Frame& reference, const Frame& frame, std::size_t i) {
-  return touches(reference, reference, i) && touches(reference, frame, i);
-}
-
-/// Unit direction from the exact last surface point to what `frame` shows at pixel `i`; nullopt where it
-/// shows nothing there.
-std::optional<glm::dvec3> shown_direction(const Frame& reference, const Frame& frame, std::size_t i) {
-  const glm::vec4& shown = frame.position[i];
-  glm::dvec3 d(shown);
-  if (shown.w != 0) d -= glm::dvec3(reference.surface[i]);
-  const double length = glm::length(d);
-  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
-  return d / length;
-}
-
-/// Angle between unit vectors, accurate for small ones too.
-double angle(const glm::dvec3& a, const glm::dvec3& b) {
-  return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
-}
-
-/// Change of a value of the reference from pixel to pixel along one axis, within the optic: central where
-/// both neighbours show it, else one-sided; nullopt where neither does.
-std::optional<glm::dvec3> difference(const Frame& f, const std::vector<glm::vec3>& values, std::size_t i,
-                                     int x, int width, std::size_t stride) {
-  const bool before = x > 0 && f.optic_id[i - stride] == f.optic_id[i];
-  const bool after = x + 1 < width && f.optic_id[i + stride] == f.optic_id[i];
-  if (!before && !after) return std::nullopt;
-  const glm::dvec3 high(values[after ? i + stride : i]), low(values[before ? i - stride : i]);
-  return (high - low) / ((before && after) ? 2.0 : 1.0);
-}
-
-/// How far, in pixels, from pixel `i` the exact picture shows what `frame` shows at `i`: the step p with
-///   (I - d d^T) (S + S' p + s (d + d' p) - Q) = 0,
-/// S and d the exact ray, ' their derivative by pixel, Q the point shown at distance s (for a direction s is
-/// infinite). Nullopt on a caustic, where the derivative is singular, and where it cannot be taken.
-std::optional<double> screen_error(const Frame& reference, const Frame& frame, std::size_t i,
-                                   const glm::dvec3& shown) {
-  const int x = int(i % std::size_t(reference.width)), y = int(i / std::size_t(reference.width));
-  const auto stride = std::size_t(reference.width);
-  const auto dx = difference(reference, reference.direction, i, x, reference.width, 1);
-  const auto dy = difference(reference, reference.direction, i, y, reference.height, stride);
-  const auto sx = difference(reference, reference.surface, i, x, reference.width, 1);
-  const auto sy = difference(reference, reference.surface, i, y, reference.height, stride);
-  if (!dx || !dy || !sx || !sy) return std::nullopt;
-  const glm::dvec3 d(reference.direction[i]);
-  const glm::vec4& q = frame.position[i];
-  const double nearness = q.w != 0 ? 1 / glm::length(glm::dvec3(q) - glm::dvec3(reference.surface[i])) : 0;
-  const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, d) * d; };
-  const glm::dvec3 jx = across(*dx + nearness * *sx), jy = across(*dy + nearness * *sy),
-                   e = across(shown - d);
-  const double a = glm::dot(jx, jx), b = glm::dot(jx, jy), c = glm::dot(jy, jy), determinant = a * c - b * b;
-  if (!(determinant > 1e-8 * (a + c) * (a + c))) return std::nullopt;
-  const double u = glm::dot(jx, e), v = glm::dot(jy, e);
-  return std::hypot((c * u - b * v) / determinant, (a * v - b * u) / determinant);
 }
 
 /// Nearest-rank quantiles.

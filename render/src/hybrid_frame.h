@@ -1,11 +1,8 @@
 // Mode `hybrid`: the primary view rasterised, exact rays only where an optic shows (design 4, limits).
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 #include "render/frame.h"
+#include "render/src/optic_mask.h"
 #include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
 #include "render/src/ray_tracer.h"
@@ -23,17 +20,9 @@ class HybridFrame {
                                     const RayTracer& tracer);
 
  private:
-  void begin_mask(const RasterTarget& target);
-  void draw_mask(const RasterView& view);
-  /// row * width + column of every pixel in or beside which some sample shows an optic, ascending.
-  [[nodiscard]] std::vector<std::uint32_t> masked_pixels() const;
-
   const Scene& scene_;
   RasterScene& raster_;
-  GlTexture mask_;
-  GlFramebuffer mask_framebuffer_;
-  glm::ivec2 mask_size_{0};
-  GlProgram mask_program_;
+  OpticMask mask_;
 };
 
 }  // namespace catoptra::render

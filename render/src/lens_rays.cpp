@@ -116,6 +116,12 @@ std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
   return samples;
 }
 
+std::vector<std::size_t> extreme_samples(std::size_t count) {
+  if (count <= 1) return {0};
+  if (count == 2) return {0, 1};
+  return {0, count / 2, count - 1};  // the first and the middle one have changed places
+}
+
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm) {
   LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}, {}, {}};

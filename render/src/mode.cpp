@@ -6,10 +6,11 @@
 namespace catoptra::render {
 namespace {
 
-constexpr std::array<std::pair<Mode, std::string_view>, 4> kNames{{{Mode::pvrr, "pvrr"},
-                                                                  {Mode::hybrid, "hybrid"},
-                                                                  {Mode::raytrace, "raytrace"},
-                                                                  {Mode::cubemap, "cubemap"}}};
+constexpr std::array<std::pair<Mode, std::string_view>, 5> kNames{{{Mode::pvrr, "pvrr"},
+                                                                   {Mode::hybrid, "hybrid"},
+                                                                   {Mode::exact, "exact"},
+                                                                   {Mode::raytrace, "raytrace"},
+                                                                   {Mode::cubemap, "cubemap"}}};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 
+#include "render/src/lens_rays.h"
 #include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
 
@@ -53,7 +54,8 @@ void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
   }
 }
 
-RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
+RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
+                               const SampleDone& sample_done) {
   RenderResult result;
   double trace_ms = 0, pass1_ms = 0, pass2_ms = 0, readback_ms = 0;
   const glm::ivec2 size(options.width, options.height);
@@ -69,7 +71,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
     });
     for (int sample = 0; sample < options.samples; ++sample) {
       const glm::dvec2 offset = sample_offset(sample, options.samples);
-      const bool geometry = options.geometry && sample == 0;
+      const bool geometry = sample_done || (options.geometry && sample == 0);
       pass1_ms += gl_time_ms([&] {
         for (PvrrPatch& patch : patches_) patch.draw_map(offset, geometry, overlay);
       });
@@ -77,6 +79,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
         draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
         picture.add_sample();
       });
+      if (sample_done) sample_done(sample, camera_view(camera, size, offset));
     }
     if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
   });
@@ -158,6 +161,21 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
   set_optic_uniforms(optic, index);
   patch.set_map(offset_px, geometry);
   raster_.optic(index).draw_surface();
+}
+
+bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterView& view,
+                                      glm::dvec2 offset_px, std::size_t extreme) {
+  bool any = false;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const PvrrPatch& patch = patches_[i];
+    if (scene_.optics[i].kind != optics::OpticKind::lens || !patch.faces_eye()) continue;
+    const auto samples = extreme_samples(patch.lens().sample_count());
+    if (extreme >= samples.size()) continue;
+    any = true;
+    patch.lens().draw_geometry(view, target, samples[extreme], lens_programs_, i,
+                               [&](bool geometry) { patch.set_map(offset_px, geometry); });
+  }
+  return any;
 }
 
 FrameStats PvrrFrame::statistics() const {

@@ -1,6 +1,7 @@
 // Mode `pvrr`: a frame by per-vertex reflection and refraction (paper 3.1, 4.5; design 2).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,8 +30,16 @@ class PvrrFrame {
   /// Times: "trace" (vertex rays, viewpoints, map coordinates), "pass1", "pass2", "readback", "total". A
   /// warning tells how many pixels of an optic its map does not reach; in a mirror they show the sky in the
   /// outgoing direction, in a lens the map's border.
-  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
-                                    RasterPicture& picture);
+  /// With `sample_done` every sample has geometry, which is in the picture's target when it is called.
+  using SampleDone = std::function<void(int sample, const RasterView& view)>;
+  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
+                                    const SampleDone& sample_done = {});
+
+  /// For SampleDone: writes the geometry of wavelength `extreme` of extreme_samples() in place of that of the
+  /// reference wavelength, for every lens that has so many; for lenses with fewer, what was there stays.
+  /// Returns whether there is any such lens.
+  bool draw_extreme_geometry(const RasterTarget& target, const RasterView& view, glm::dvec2 offset_px,
+                             std::size_t extreme);
 
  private:
   void bounds_changed(const cad_import::BoundingBox& bounds);

@@ -7,23 +7,6 @@ namespace {
 
 constexpr GLint kWeight = 2;  // as in raster_accumulate.frag.glsl
 
-void fill_geometry(const RasterTarget& target, Frame& frame) {
-  frame.position = read_texture(target.position(), target.size());
-  const std::vector<glm::vec4> detail = read_texture(target.detail(), target.size());
-  frame.surface.assign(detail.size(), glm::vec3(0));
-  frame.direction.assign(detail.size(), glm::vec3(0));
-  frame.optic_id.assign(detail.size(), -1);
-  for (std::size_t i = 0; i < detail.size(); ++i) {
-    if (detail[i].w < 0.5f) continue;
-    frame.optic_id[i] = static_cast<std::int32_t>(detail[i].w + 0.5f) - 1;
-    frame.surface[i] = glm::vec3(detail[i]);
-    const glm::vec3 shown(frame.position[i]);
-    const glm::vec3 direction = frame.position[i].w == 0 ? shown : shown - frame.surface[i];
-    const float length = glm::length(direction);
-    if (length > 0) frame.direction[i] = direction / length;
-  }
-}
-
 }  // namespace
 
 RasterPicture::RasterPicture()
@@ -66,8 +49,25 @@ Frame RasterPicture::read_back() const {
   frame.height = options_.height;
   frame.color = read_texture(options_.samples > 1 ? sum_ : target_->color(), target_->size());
   for (glm::vec4& pixel : frame.color) pixel.w = 1;
-  if (options_.geometry) fill_geometry(*target_, frame);
+  if (options_.geometry) read_geometry(frame);
   return frame;
+}
+
+void RasterPicture::read_geometry(Frame& frame) const {
+  frame.position = read_texture(target_->position(), target_->size());
+  const std::vector<glm::vec4> detail = read_texture(target_->detail(), target_->size());
+  frame.surface.assign(detail.size(), glm::vec3(0));
+  frame.direction.assign(detail.size(), glm::vec3(0));
+  frame.optic_id.assign(detail.size(), -1);
+  for (std::size_t i = 0; i < detail.size(); ++i) {
+    if (detail[i].w < 0.5f) continue;
+    frame.optic_id[i] = static_cast<std::int32_t>(detail[i].w + 0.5f) - 1;
+    frame.surface[i] = glm::vec3(detail[i]);
+    const glm::vec3 shown(frame.position[i]);
+    const glm::vec3 direction = frame.position[i].w == 0 ? shown : shown - frame.surface[i];
+    const float length = glm::length(direction);
+    if (length > 0) frame.direction[i] = direction / length;
+  }
 }
 
 }  // namespace catoptra::render

@@ -3,13 +3,13 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 
 #include "render/src/ray_tracer_packet.h"
+#include "render/src/threads.h"
 
 namespace catoptra::render {
 namespace {
@@ -20,17 +20,6 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// Runs `work` in an arena of `threads` threads; 0: all of them.
-template <typename Work>
-void with_threads(std::size_t threads, const Work& work) {
-  if (threads == 0) {
-    work();
-    return;
-  }
-  tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute(work);
 }
 
 /// The pixels of tile (tile_x, tile_y), row by row; lanes outside the picture are inactive.
@@ -57,6 +46,35 @@ std::vector<std::uint32_t> by_tiles(std::span<const std::uint32_t> pixels, int w
   for (std::size_t i = 1; i < next.size(); ++i) next[i] += next[i - 1];
   for (const std::uint32_t pixel : pixels) sorted[next[tile_of(pixel)]++] = pixel;
   return sorted;
+}
+
+/// Calls `trace` (packet of pixels -> number of rays) for all pixels listed, on the options' threads; adds up
+/// the rays.
+template <typename Trace>
+std::size_t for_packets(const FrameOptions& options, std::span<const std::uint32_t> pixels,
+                        const Trace& trace) {
+  const std::vector<std::uint32_t> sorted = by_tiles(pixels, options.width, options.height);
+  constexpr std::size_t lanes = PixelPacket::kLanes;
+  const std::size_t packet_count = (sorted.size() + lanes - 1) / lanes;
+  std::atomic<std::size_t> count{0};
+  with_threads(options.threads, [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packet_count, 64), [&](const auto& range) {
+      std::size_t traced = 0;
+      for (std::size_t p = range.begin(); p != range.end(); ++p) {
+        PixelPacket packet;
+        for (std::size_t i = 0; i < lanes; ++i) {
+          const std::size_t k = p * lanes + i;
+          packet.active[i] = k < sorted.size();
+          const int pixel = int(sorted[std::min(k, sorted.size() - 1)]);
+          packet.column[i] = pixel % options.width;
+          packet.row[i] = pixel / options.width;
+        }
+        traced += trace(packet);
+      }
+      count += traced;
+    });
+  });
+  return count;
 }
 
 void allocate(Frame& frame, const FrameOptions& options) {
@@ -121,28 +139,18 @@ RenderResult RayTracer::render(const Camera& camera, const FrameOptions& options
 std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& options,
                                     std::span<const std::uint32_t> pixels, Frame& frame) const {
   const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
-  const std::vector<std::uint32_t> sorted = by_tiles(pixels, options.width, options.height);
-  constexpr std::size_t lanes = PixelPacket::kLanes;
-  const std::size_t packet_count = (sorted.size() + lanes - 1) / lanes;
-  std::atomic<std::size_t> count{0};
-  with_threads(options.threads, [&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, packet_count, 64), [&](const auto& range) {
-      std::size_t traced = 0;
-      for (std::size_t p = range.begin(); p != range.end(); ++p) {
-        PixelPacket packet;
-        for (std::size_t i = 0; i < lanes; ++i) {
-          const std::size_t k = p * lanes + i;
-          packet.active[i] = k < sorted.size();
-          const int pixel = int(sorted[std::min(k, sorted.size() - 1)]);
-          packet.column[i] = pixel % options.width;
-          packet.row[i] = pixel / options.width;
-        }
-        traced += impl_->packets.trace(view, options, packet, frame);
-      }
-      count += traced;
-    });
+  return for_packets(options, pixels, [&](const PixelPacket& packet) {
+    return impl_->packets.trace(view, options, packet, frame);
   });
-  return count;
+}
+
+std::size_t RayTracer::trace_exact(const Camera& camera, const FrameOptions& options, glm::dvec2 offset_px,
+                                   std::size_t extreme, std::span<const std::uint32_t> pixels,
+                                   ExactPixels& exact) const {
+  const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
+  return for_packets(options, pixels, [&](const PixelPacket& packet) {
+    return impl_->packets.trace_exact(view, offset_px, extreme, packet, exact);
+  });
 }
 
 double RayTracer::bare_packet_ms(const Camera& camera, const FrameOptions& options) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "optics/ray_scene.h"
 #include "render/frame.h"
 #include "render/scene.h"
+#include "render/src/exact_pixels.h"
 #include "render/src/textures.h"
 
 namespace catoptra::render {
@@ -33,6 +35,13 @@ class RayTracer {
   /// traced.
   std::size_t trace_pixels(const Camera& camera, const FrameOptions& options,
                            std::span<const std::uint32_t> pixels, Frame& frame) const;
+
+  /// Where the exact rays of the pixels listed leave an optic, and what they meet: see
+  /// PacketTracer::trace_exact. Pixels that show no optic are left as they are. Returns the number of rays
+  /// traced.
+  std::size_t trace_exact(const Camera& camera, const FrameOptions& options, glm::dvec2 offset_px,
+                          std::size_t extreme, std::span<const std::uint32_t> pixels,
+                          ExactPixels& exact) const;
 
   /// Tells that the mesh of optic `index` has changed (the ray scene is updated by its owner).
   void optic_changed(std::size_t index);

@@ -65,6 +65,11 @@ class TracedLenses {
   /// Wavelengths of the lens in `lanes` that has most of them; 0: no lens.
   [[nodiscard]] std::size_t sample_count(const LensLanes& lanes) const;
 
+  /// Wavelengths of optic `index`, a lens.
+  [[nodiscard]] std::size_t sample_count_of(std::size_t index) const {
+    return by_optic_[index]->samples.size();
+  }
+
   /// The rays behind the lenses at wavelength number `sample`; 0 is the one that geometry belongs to.
   void refract(const LensLanes& lanes, std::size_t sample, RefractedLanes& out) const;
 

@@ -1,10 +1,12 @@
 #include "render/src/ray_tracer_packet.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "optics/vertex_hits.h"
+#include "render/src/lens_rays.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -69,13 +71,21 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
   }
 }
 
+std::size_t index_of(const PixelPacket& pixels, int i, const Frame& frame) {
+  return std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
+}
+
+/// Of the triangle that lane `i` has met; anything where it has met none.
+glm::vec3 unit_normal(const optics::RayPacket16& hits, int i) {
+  return glm::normalize(glm::vec3(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]));
+}
+
 /// Where its light does not pass, a lens counts as a body like any other.
 void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
                          Frame& frame) {
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i] || lanes.optic[i] < 0) continue;
-    const std::size_t at =
-        std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
+    const std::size_t at = index_of(pixels, i, frame);
     const bool passed = out.passed[i];
     const glm::dvec3 exit = out.beams.point.at(i), direction = out.beams.direction.at(i);
     const double way = optics::kSelfHitDistance_mm + double(out.rays.t_max[i]);
@@ -329,8 +339,7 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
                                   Frame& frame) const {
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i]) continue;
-    const std::size_t at =
-        std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
+    const std::size_t at = index_of(pixels, i, frame);
     const bool mirrored = p.optic[i] >= 0;
     const optics::RayPacket16& last = mirrored ? p.second : p.first;
     glm::dvec3 origin = camera.eye_mm, direction = camera.direction(p.column[i], p.row[i]);
@@ -345,6 +354,54 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
     frame.direction[at] = mirrored ? glm::vec3(direction) : glm::vec3(0);
     frame.optic_id[at] = p.optic[i];
   }
+}
+
+std::size_t PacketTracer::trace_exact(const PacketView& view, glm::dvec2 offset_px, std::size_t extreme,
+                                      const PixelPacket& pixels, ExactPixels& exact) const {
+  Packet p;
+  primary(view, pixels, offset_px, p);
+  reflect(view.camera, p);
+  std::size_t rays = 0;
+  PixelPacket mirrored = pixels;
+  for (int i = 0; i < kLanes; ++i) {
+    rays += pixels.active[i] ? (p.optic[i] >= 0 ? 2u : 1u) : 0u;
+    mirrored.active[i] = pixels.active[i] && p.optic[i] >= 0;
+    if (mirrored.active[i]) exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(p.second, i);
+  }
+  if (p.any_mirror) write_geometry(view.camera, mirrored, p, exact.frame);
+  return p.lens.any ? rays + refract_exact(view, extreme, pixels, p, exact) : rays;
+}
+
+std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extreme,
+                                        const PixelPacket& pixels, Packet& p, ExactPixels& exact) const {
+  std::size_t rays = 0;
+  std::array<std::size_t, kLanes> sample{};  // lenses differ in their number of wavelengths
+  for (int i = 0; i < kLanes; ++i)
+    if (p.lens.optic[i] >= 0) {
+      const auto extremes = extreme_samples(lenses_.sample_count_of(std::size_t(p.lens.optic[i])));
+      sample[std::size_t(i)] = extremes[std::min(extreme, extremes.size() - 1)];
+    }
+  lenses_.enter(view.camera, p.column, p.row, p.lens);
+  PixelPacket waiting = pixels;
+  for (int i = 0; i < kLanes; ++i) waiting.active[i] = pixels.active[i] && p.lens.optic[i] >= 0;
+  for (int first = 0; first < kLanes; ++first) {
+    if (!waiting.active[first]) continue;
+    PixelPacket now = waiting;
+    for (int i = 0; i < kLanes; ++i) {
+      now.active[i] = waiting.active[i] && sample[std::size_t(i)] == sample[std::size_t(first)];
+      if (now.active[i]) waiting.active[i] = false;
+    }
+    RefractedLanes out;
+    lenses_.refract(p.lens, sample[std::size_t(first)], out);
+    rays_.intersect16(out.rays, optics::kEverything, true);
+    write_lens_geometry(now, p.lens, out, exact.frame);
+    for (int i = 0; i < kLanes; ++i) {
+      if (!now.active[i] || !out.passed[i]) continue;
+      exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(out.rays, i);
+      ++rays;
+    }
+  }
+  return rays;
 }
 
 std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view,

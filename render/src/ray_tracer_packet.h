@@ -6,6 +6,7 @@
 
 #include "optics/ray_scene.h"
 #include "render/frame.h"
+#include "render/src/exact_pixels.h"
 #include "render/src/ray_tracer_exact.h"
 #include "render/src/ray_tracer_lens.h"
 #include "render/src/sampling.h"
@@ -48,6 +49,12 @@ class PacketTracer {
   std::size_t trace(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                     Frame& frame) const;
 
+  /// Writes where the rays through the pixels' centres, moved by `offset_px`, leave an optic and what they
+  /// meet, for the active pixels that show one. Behind a lens the ray is that of wavelength `extreme` of
+  /// extreme_samples(), or of the last of them where there are fewer. Returns the number of rays.
+  std::size_t trace_exact(const PacketView& view, glm::dvec2 offset_px, std::size_t extreme,
+                          const PixelPacket& pixels, ExactPixels& exact) const;
+
   /// The reflected and refracted rays of the pixels' centres.
   [[nodiscard]] std::vector<SecondaryPacket> secondary_rays(const PacketView& view,
                                                             const PixelPacket& pixels) const;
@@ -66,6 +73,8 @@ class PacketTracer {
   std::size_t refract(const PacketView& view, const PixelPacket& pixels, Packet& p, Frame* geometry) const;
   void query_skipping_own_optic(Packet& p) const;
   void set_hits(const CameraRays& camera, Packet& p) const;
+  std::size_t refract_exact(const PacketView& view, std::size_t extreme, const PixelPacket& pixels, Packet& p,
+                            ExactPixels& exact) const;
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
                       Frame& frame) const;
 

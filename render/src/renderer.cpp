@@ -8,6 +8,7 @@
 #include "optics/placement.h"
 #include "optics/ray_scene.h"
 #include "render/src/cubemap_frame.h"
+#include "render/src/exact_frame.h"
 #include "render/src/gl_context.h"
 #include "render/src/hybrid_frame.h"
 #include "render/src/pvrr_frame.h"
@@ -45,12 +46,14 @@ struct Gpu {
       : raster(scene, textures),
         pvrr(scene, raster, rays, bounds),
         cubemap(scene, raster),
-        hybrid(scene, raster) {}
+        hybrid(scene, raster),
+        exact(scene, raster, pvrr) {}
   RasterScene raster;
   RasterPicture picture;
   PvrrFrame pvrr;
   CubemapFrame cubemap;
   HybridFrame hybrid;
+  ExactFrame exact;
 };
 
 }  // namespace
@@ -90,12 +93,22 @@ struct Renderer::Impl {
       gpu = std::make_unique<Gpu>(scene, textures, rays, bounds());
       for (std::size_t i = 0; i < placements.size(); ++i) place_on_gpu(i);
     }
-    RenderResult result = mode == Mode::pvrr ? gpu->pvrr.render(camera, options, gpu->picture)
-                          : mode == Mode::cubemap
-                              ? gpu->cubemap.render(camera, options, gpu->picture)
-                              : gpu->hybrid.render(camera, options, gpu->picture, placed_tracer());
+    RenderResult result = draw(mode, camera, options);
     context->throw_if_errors();
     return result;
+  }
+
+  RenderResult draw(Mode mode, const Camera& camera, const FrameOptions& options) {
+    switch (mode) {
+      case Mode::hybrid:
+        return gpu->hybrid.render(camera, options, gpu->picture, placed_tracer());
+      case Mode::exact:
+        return gpu->exact.render(camera, options, gpu->picture, placed_tracer());
+      case Mode::cubemap:
+        return gpu->cubemap.render(camera, options, gpu->picture);
+      default:
+        return gpu->pvrr.render(camera, options, gpu->picture);
+    }
   }
 
   void place_on_gpu(std::size_t index) {

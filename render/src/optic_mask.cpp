@@ -1,0 +1,67 @@
+#include "render/src/optic_mask.h"
+
+#include <algorithm>
+#include <glm/vec4.hpp>
+
+namespace catoptra::render {
+namespace {
+
+/// Indices of the marked pixels and of those beside them: rasteriser and ray tracer round differently, so
+/// that on the outline one may see the optic where the other does not. The ray tracer knows what to do with
+/// both.
+std::vector<std::uint32_t> with_neighbours(const std::vector<std::uint8_t>& mask, int width, int height) {
+  std::vector<std::uint32_t> pixels;
+  std::vector<std::uint8_t> rows(
+      static_cast<std::size_t>(width));  // marked in this row or the ones beside it
+  for (int y = 0; y < height; ++y) {
+    std::fill(rows.begin(), rows.end(), std::uint8_t(0));
+    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
+      for (int x = 0; x < width; ++x) rows[x] |= mask[static_cast<std::size_t>(row) * width + x];
+    for (int x = 0; x < width; ++x)
+      if (rows[x] | rows[std::max(0, x - 1)] | rows[std::min(width - 1, x + 1)])
+        pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+  }
+  return pixels;
+}
+
+}  // namespace
+
+OpticMask::OpticMask(const Scene& scene, const RasterScene& raster)
+    : scene_(scene),
+      raster_(raster),
+      program_(make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_mask.frag.glsl"})) {}
+
+void OpticMask::begin(glm::ivec2 size, const GlTexture* depth) {
+  if (size_ != size) {
+    mask_ = make_texture_2d(GL_R8, size.x, size.y, 1, false);
+    size_ = size;
+  }
+  // The depth texture may be another one than in the last frame.
+  framebuffer_ = make_framebuffer({&mask_}, depth);
+  const glm::vec4 nothing(0);
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, &nothing.x);
+}
+
+void OpticMask::draw(const RasterView& view) {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glUseProgram(program_.id());
+  for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
+    const optics::Optic& optic = scene_.optics[i];
+    const RasterOptic& seen =
+        optic.kind == optics::OpticKind::mirror
+            ? raster_.optic(i)
+            : raster_.side(
+                  i, optics::side_towards(optic, raster_.optic(i).placement().own_point(view.origin_mm)));
+    RasterScene::set_mesh_origin(view, seen);
+    seen.draw_surface();
+  }
+}
+
+std::vector<std::uint32_t> OpticMask::pixels() const {
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
+  return with_neighbours(mask, size_.x, size_.y);
+}
+
+}  // namespace catoptra::render
