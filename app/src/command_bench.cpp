@@ -20,7 +20,7 @@ constexpr int kBareRepetitions = 5;
 
 struct BenchOptions {
   DrawingOptions drawing;
-  std::vector<std::string> modes{"pvrr", "hybrid", "raytrace", "cubemap"};
+  std::vector<std::string> modes{"pvrr", "hybrid", "exact", "raytrace", "cubemap"};
   int frames = 20;
   bool json = false;
 };
@@ -85,6 +85,9 @@ void add_ratios(Session& session, const std::vector<ModeTiming>& timings, ordere
   for (const std::string name : {"pvrr", kRiding, kStatic})
     if (const FrameTiming* pvrr = timing_of(timings, name))
       if (const auto ratio = frame_over_raster_passes(*pvrr)) report[name + "_over_raster_passes"] = *ratio;
+  if (const FrameTiming* exact = timing_of(timings, "exact"), *pvrr = timing_of(timings, "pvrr");
+      exact && pvrr)
+    report["exact_over_pvrr"] = exact->median_ms() / pvrr->median_ms();
   std::vector<double> bare;
   for (int i = 0; i < kBareRepetitions; ++i)
     bare.push_back(session.renderer().bare_packet_ms(session.scene().camera, session.frame));
@@ -132,6 +135,7 @@ void print_table(const ordered_json& report) {
   print_ratio(report, "pvrr_colors_over_one_color", "pvrr frame with the lenses' wavelengths / with one");
   print_ratio(report, "pvrr_riding_colors_over_one_color", "... with eye and optics moving together");
   print_ratio(report, "pvrr_static_colors_over_one_color", "... with eye and optics at rest");
+  print_ratio(report, "exact_over_pvrr", "exact frame / pvrr frame, everything anew");
   print_ratio(report, "raytrace_over_bare_packets", "raytrace frame / bare ray packets for the same rays");
   print_ratio(report, "optic_commit_over_full_build", "moving an optic / building the ray scene");
   print_ratio(report, "tessellate_over_brepmesh", "times faster than the CAD kernel's mesher");

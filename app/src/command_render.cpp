@@ -31,7 +31,7 @@ struct RenderOptions {
 
 void check_usage(const RenderOptions& options) {
   if (options.overlay == "patches")
-    throw UsageError("overlay 'patches' is not in this version", "it has vertices, rays, error");
+    throw UsageError("overlay 'patches' is not in this version", "it has vertices, rays, error, retraced");
   if (options.report == "-" && options.output == "-")
     throw UsageError("the picture and the report cannot both go to standard output");
   if (!options.report.empty() && options.report == options.output)
@@ -101,6 +101,13 @@ std::optional<render::Frame> read_reference(const RenderOptions& options, const 
   return reference;
 }
 
+void check_overlay(const RenderOptions& options, render::Mode mode) {
+  if (options.overlay == "retraced" && mode != render::Mode::exact)
+    throw UsageError("overlay 'retraced' belongs to mode 'exact', and this is '" +
+                         std::string(render::mode_name(mode)) + "'",
+                     "add --mode exact");
+}
+
 int run_render(const RenderOptions& options, const CommonOptions& common) {
   check_usage(options);
   std::optional<render::Mode> mode;
@@ -108,6 +115,7 @@ int run_render(const RenderOptions& options, const CommonOptions& common) {
   check_picture_path(options.output);
   Session session(options.drawing, common);
   if (!mode) mode = parse_mode(session.scene().settings.mode);
+  check_overlay(options, *mode);
   const auto reference = read_reference(options, session.frame);
 
   render::FrameOptions frame_options = session.frame;
@@ -121,6 +129,8 @@ int run_render(const RenderOptions& options, const CommonOptions& common) {
     const render::Frame picture = error_overlay(session, frame_options, result.frame);
     result.frame.color = picture.color;
   }
+  if (options.overlay == "retraced")
+    result.frame.color = marked_picture(result.frame, result.frame.retraced).color;
   write_picture(result.frame, options.output, layers);
 
   auto report = report_json(session, *mode, options, result);
@@ -147,7 +157,8 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
                   "Picture to write, .png or .exr; - writes PNG to standard output")
       ->required()
       ->option_text("IMAGE");
-  app->add_option("--mode", options->mode, "pvrr, hybrid, raytrace or cubemap, in place of the scene's")
+  app->add_option("--mode", options->mode,
+                  "pvrr, hybrid, exact, raytrace or cubemap, in place of the scene's")
       ->option_text("MODE");
   app->add_option("--samples", options->samples, "Samples per pixel")
       ->check(CLI::Range(1, 4096))
@@ -155,8 +166,9 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
   app->add_option("--report", options->report, "JSON report to write; an .exr gets the geometry layers")
       ->option_text("R.json");
   app->add_flag("--aov", options->aov, "Geometry layers in an .exr");
-  app->add_option("--overlay", options->overlay, "Draw over the picture: vertices, rays or error")
-      ->check(CLI::IsMember({"vertices", "rays", "patches", "error"}))
+  app->add_option("--overlay", options->overlay,
+                  "Draw over the picture: vertices, rays, error, or retraced (mode exact)")
+      ->check(CLI::IsMember({"vertices", "rays", "patches", "error", "retraced"}))
       ->option_text("WHAT");
   app->add_option("--reference", options->reference, "Picture to compare with; exit code 3 where it differs")
       ->option_text("IMAGE");

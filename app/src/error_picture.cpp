@@ -99,4 +99,17 @@ render::Frame error_picture(const render::Frame& background, std::span<const flo
   return picture;
 }
 
+render::Frame marked_picture(const render::Frame& background, std::span<const std::uint8_t> marked) {
+  render::Frame picture;
+  picture.width = background.width;
+  picture.height = background.height;
+  picture.color.resize(background.color.size());
+  constexpr glm::vec3 kMark(1.0f, 0.25f, 0.02f);
+  for (std::size_t i = 0; i < picture.color.size(); ++i) {
+    const bool mark = i < marked.size() && marked[i] != 0;
+    picture.color[i] = glm::vec4(mark ? kMark : glm::vec3(0.25f * luminance(background.color[i])), 1);
+  }
+  return picture;
+}
+
 }  // namespace catoptra::app

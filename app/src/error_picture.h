@@ -1,6 +1,7 @@
 // Errors as false colours, with a legend.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 
@@ -18,5 +19,9 @@ inline constexpr double kErrorScaleMin_arcmin = 0.01, kErrorScaleMax_arcmin = 10
 /// of `background`, with the scale drawn at the bottom left where the picture is large enough.
 [[nodiscard]] render::Frame error_picture(const render::Frame& background,
                                           std::span<const float> errors_arcmin);
+
+/// The pixels marked (not 0) in orange over a dimmed grey copy of `background`.
+[[nodiscard]] render::Frame marked_picture(const render::Frame& background,
+                                           std::span<const std::uint8_t> marked);
 
 }  // namespace catoptra::app

@@ -59,19 +59,21 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   RenderResult result;
   double trace_ms = 0, pass1_ms = 0, pass2_ms = 0, readback_ms = 0;
   const glm::ivec2 size(options.width, options.height);
+  FrameOptions drawn = options;
+  drawn.geometry = options.geometry || sample_done;
   Overlay* const overlay = options.overlay_vertices || options.overlay_rays ? &overlay_ : nullptr;
   const double total_ms = gl_time_ms([&] {
     trace_ms = gl_time_ms([&] {
-      picture.begin(options);
+      picture.begin(drawn);
       const RasterView view = camera_view(camera, size);
-      for (PvrrPatch& patch : patches_) patch.update(view, options);
+      for (PvrrPatch& patch : patches_) patch.update(view, drawn);
       set_overlay(options);
       const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
       update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
     for (int sample = 0; sample < options.samples; ++sample) {
       const glm::dvec2 offset = sample_offset(sample, options.samples);
-      const bool geometry = sample_done || (options.geometry && sample == 0);
+      const bool geometry = drawn.geometry && (sample == 0 || sample_done);
       pass1_ms += gl_time_ms([&] {
         for (PvrrPatch& patch : patches_) patch.draw_map(offset, geometry, overlay);
       });
@@ -81,7 +83,9 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       });
       if (sample_done) sample_done(sample, camera_view(camera, size, offset));
     }
-    if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
+    if (options.read_back)
+      readback_ms =
+          gl_time_ms([&] { result.frame = sample_done ? picture.read_color() : picture.read_back(); });
   });
 
   result.stats = statistics();

@@ -43,12 +43,17 @@ void RasterPicture::add_sample() {
   glEnable(GL_DEPTH_TEST);
 }
 
-Frame RasterPicture::read_back() const {
+Frame RasterPicture::read_color() const {
   Frame frame;
   frame.width = options_.width;
   frame.height = options_.height;
   frame.color = read_texture(options_.samples > 1 ? sum_ : target_->color(), target_->size());
   for (glm::vec4& pixel : frame.color) pixel.w = 1;
+  return frame;
+}
+
+Frame RasterPicture::read_back() const {
+  Frame frame = read_color();
   if (options_.geometry) read_geometry(frame);
   return frame;
 }

@@ -26,6 +26,8 @@ class RasterPicture {
   /// Sets position, surface, direction and optic_id of `frame` to what the target holds of them.
   void read_geometry(Frame& frame) const;
 
+  /// The mean of the samples.
+  [[nodiscard]] Frame read_color() const;
   /// The mean of the samples, and the geometry that sample 0 has left in the target, where the options ask
   /// for it.
   [[nodiscard]] Frame read_back() const;

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 _Path = str | os.PathLike[str]
 _Vector = Sequence[float]
-_Mode = Literal["pvrr", "hybrid", "raytrace", "cubemap"]
+_Mode = Literal["pvrr", "hybrid", "exact", "raytrace", "cubemap"]
 
 __version__: str
 
