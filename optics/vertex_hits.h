@@ -47,6 +47,10 @@ inline constexpr double kSelfHitDistance_mm = 0.01;
 /// the positions of eye and mirror. Throws catoptra::Error for a lens.
 [[nodiscard]] std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& eye_mm);
 
+/// One such ray, through any point of the mirror, for which `vertex` holds what a vertex would.
+[[nodiscard]] VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror,
+                                       const glm::dvec3& eye_mm);
+
 /// The refracted ray of each vertex of the entered side's mesh, in its order, without scene hits: exact on
 /// both surfaces. Depends on nothing but the positions of eye and lens, so a renderer keeps it while those
 /// stay (paper 5). `tracer` belongs to `lens`.

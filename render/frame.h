@@ -33,12 +33,14 @@ struct PatchStats {
 
 struct OpticStats {
   std::string name;
-  std::string kind;  ///< "mirror" or "lens"
-  std::size_t vertices = 0;
-  std::size_t rays = 0;  ///< reflected or refracted for this optic in this frame
+  std::string kind;          ///< "mirror" or "lens"
+  std::size_t vertices = 0;  ///< mode pvrr: of the mesh drawn, refined where it had to be
+  std::size_t rays = 0;      ///< reflected or refracted for this optic in this frame
   std::size_t scene_rays =
       0;  ///< mode pvrr: sent into the scene from there, which kept rays are too where the optic moves
   std::vector<PatchStats> patches;
+  std::size_t refinement_rays =
+      0;  ///< mode pvrr: of `rays`, those at the middles of edges and in new vertices
   /// Mode exact: pixels that show the optic in any sample, and those of them that were traced anew.
   std::size_t shown_pixels = 0, retraced_pixels = 0;
 };

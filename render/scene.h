@@ -39,7 +39,7 @@ struct Environment {
 
 struct RenderSettings {
   std::string mode = "pvrr";
-  double max_error_px = 0.5;
+  double max_error_px = 0;  ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
   double patch_fov_rad = 1.047;
   int depth = 3;
   double chord_mm = 0.01;

@@ -27,9 +27,18 @@ struct OpticTriangle {
   std::array<glm::dvec2, 3> uv;  ///< each corner's parameters on that face (a border vertex has one per face)
 };
 
+/// A triangle's side that lies on an edge of the CAD model: where its ends are on that edge's curve.
+struct OpticBorder {
+  std::uint32_t triangle = 0;  ///< index in OpticArrays::triangles
+  std::uint8_t side = 0;       ///< from corner `side` to the next
+  int cad_edge = 0;            ///< EdgeUse::edge
+  double t_from = 0, t_to = 0;
+};
+
 struct OpticArrays {
   std::vector<OpticVertex> vertices;
   std::vector<OpticTriangle> triangles;
+  std::vector<OpticBorder> borders;  ///< in the order of their triangles; refinement reads them, may be empty
 };
 
 }  // namespace catoptra::tessellate

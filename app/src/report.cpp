@@ -49,8 +49,10 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
     ordered_json entry{{"name", optic.name},
                        {"kind", optic.kind == optics::OpticKind::mirror ? "mirror" : "lens"}};
     if (errors) entry["pixels"] = errors->at(i).pixels;
-    entry["vertices"] = optic.mesh.vertices.size();
+    entry["vertices"] = told.vertices > 0 ? told.vertices : optic.mesh.vertices.size();
+    entry["tessellated_vertices"] = optic.mesh.vertices.size();
     entry["rays"] = told.rays;
+    entry["refinement_rays"] = told.refinement_rays;
     entry["patches"] = patches_json(told.patches);
     if (errors) {
       entry["outline_pixels"] = errors->at(i).outline_pixels;

@@ -95,6 +95,7 @@ std::vector<render::Light> read_lights(const TomlTable& root, const SceneContext
 
 render::RenderSettings read_render_settings(const TomlTable& root, std::vector<std::string>& warnings) {
   render::RenderSettings settings;
+  settings.max_error_px = 0.5;
   const toml::table* found = root.table("render");
   if (!found) return settings;
   const TomlTable table(*found, root.file(), "render",
@@ -113,13 +114,11 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
       table.integer("soft_shadow_samples", 1, 4096).value_or(settings.soft_shadow_samples);
   // Parts of the format whose passes this version does not have: said once, never passed over in silence.
   std::string unused;
-  for (const std::string_view key : {"max_error_px", "patch_fov_deg", "depth", "soft_shadow_samples"}) {
-    const bool asks_for_nothing = key == "max_error_px" && settings.max_error_px == 0;
-    if (table.has(key) && !asks_for_nothing) unused += (unused.empty() ? "" : ", ") + std::string(key);
+  for (const std::string_view key : {"patch_fov_deg", "depth", "soft_shadow_samples"}) {
+    if (table.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(key);
   }
   if (!unused.empty())
-    warnings.push_back("this version does not use [render] " + unused +
-                       ": one map per optic, mesh as tessellated");
+    warnings.push_back("this version does not use [render] " + unused + ": one map per optic");
   return settings;
 }
 

@@ -41,21 +41,24 @@ Arrival arrive(const tessellate::OpticVertex& vertex, const glm::dvec3& eye_mm) 
 
 }  // namespace
 
+VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror,
+                         const glm::dvec3& eye_mm) {
+  auto [hit, distance] = arrive(vertex, eye_mm);
+  hit.faces_eye = glm::dot(hit.from_eye, reflecting_normal(mirror, vertex.normal)) < 0;
+  if (!hit.faces_eye) return hit;
+  hit.direction = reflect(hit.from_eye, vertex.normal);
+  hit.differential = reflected(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
+                               surface_at(vertex));
+  return hit;
+}
+
 std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& eye_mm) {
   if (mirror.kind != OpticKind::mirror)
     throw Error("", mirror.name, "is a lens, and only mirrors can be traced so");
   std::vector<VertexHit> hits;
   hits.reserve(mirror.mesh.vertices.size());
-  for (const tessellate::OpticVertex& vertex : mirror.mesh.vertices) {
-    auto [hit, distance] = arrive(vertex, eye_mm);
-    hit.faces_eye = glm::dot(hit.from_eye, reflecting_normal(mirror, vertex.normal)) < 0;
-    if (hit.faces_eye) {
-      hit.direction = reflect(hit.from_eye, vertex.normal);
-      hit.differential = reflected(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
-                                   surface_at(vertex));
-    }
-    hits.push_back(hit);
-  }
+  for (const tessellate::OpticVertex& vertex : mirror.mesh.vertices)
+    hits.push_back(reflect_vertex(vertex, mirror, eye_mm));
   return hits;
 }
 

@@ -124,7 +124,12 @@ std::vector<std::size_t> extreme_samples(std::size_t count) {
 
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm) {
-  LensRays rays{optics::side_towards(lens, eye_mm), samples_of(lens), {}, {}, {}};
+  return refract_eye_rays(lens, tracer, eye_mm, optics::side_towards(lens, eye_mm));
+}
+
+LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
+                          const glm::dvec3& eye_mm, optics::LensSide entered) {
+  LensRays rays{entered, samples_of(lens), {}, {}, {}};
   const auto& mesh = *optics::side_of(lens, rays.entered).mesh;
   for (const optics::SpectralSample& sample : rays.samples) {
     auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, eye_mm);
@@ -136,6 +141,16 @@ LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& t
   }
   rays.border = rays_to_border(lens, tracer, rays, eye_mm);
   return rays;
+}
+
+void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view) {
+  if (view.projection == optics::MapProjection::parallel) return;
+  for (VertexHit& hit : hits) {
+    if (!hit.faces_eye || passes(hit)) continue;
+    const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
+    constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
+    hit.faces_eye = glm::dot(shown, view.direction) > kGrazing * glm::length(shown);
+  }
 }
 
 }  // namespace catoptra::render

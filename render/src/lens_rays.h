@@ -7,6 +7,7 @@
 #include "optics/lens_path.h"
 #include "optics/spectrum.h"
 #include "optics/vertex_hits.h"
+#include "optics/virtual_view.h"
 
 namespace catoptra::render {
 
@@ -41,5 +42,11 @@ struct LensRays {
 /// Without scene hits: depends on the positions of eye and lens alone.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm);
+/// The same from a given side.
+[[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
+                                        const glm::dvec3& eye_mm, optics::LensSide entered);
+
+/// Closes vertices whose ray, continued beyond the border, has no place in the map.
+void close_off_map(std::vector<optics::VertexHit>& hits, const optics::VirtualView& view);
 
 }  // namespace catoptra::render

@@ -92,6 +92,8 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.stats.time_ms = {{"trace", trace_ms}, {"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   result.warnings = map_warnings();
+  for (const PvrrPatch& patch : patches_)
+    if (auto warning = patch.warning()) result.warnings.push_back(std::move(*warning));
   return result;
 }
 
@@ -161,10 +163,10 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
     return;
   }
   glUseProgram(mirror_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, raster_.optic(index));
+  RasterScene::set_mesh_origin(camera, patch.seen_surface());
   set_optic_uniforms(optic, index);
   patch.set_map(offset_px, geometry);
-  raster_.optic(index).draw_surface();
+  patch.seen_surface().draw_surface();
 }
 
 bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterView& view,

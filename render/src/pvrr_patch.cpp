@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 
 #include "optics/map_coordinates.h"
@@ -69,17 +71,6 @@ std::vector<VertexHit> rays_in_map(const LensRays& rays) {
   return all;
 }
 
-/// Closes vertices whose ray, continued beyond the border, has no place in the map.
-void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view) {
-  if (view.projection == optics::MapProjection::parallel) return;
-  for (VertexHit& hit : hits) {
-    if (!hit.faces_eye || passes(hit)) continue;
-    const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
-    constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
-    hit.faces_eye = glm::dot(shown, view.direction) > kGrazing * glm::length(shown);
-  }
-}
-
 }  // namespace
 
 PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
@@ -92,6 +83,10 @@ PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster,
       bounds_(bounds) {}
 
 void PvrrPatch::optic_changed() {
+  refinement_.forget();
+  refined_surface_.reset();
+  refined_lens_ = {};
+  refined_from_.reset();
   tracer_.reset();
   traced_from_.reset();
 }
@@ -105,11 +100,12 @@ void PvrrPatch::set_bounds(const cad_import::BoundingBox& bounds) {
 void PvrrPatch::place(const optics::Placement& placement) {
   if (placement == placement_) return;
   placement_ = placement;
+  if (refined_surface_) refined_surface_->place(placement);
   hits_hold_ = false;
 }
 
 void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
-  traced_rays_ = scene_rays_ = 0;
+  traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
   if (!faces_eye_) {
@@ -119,7 +115,7 @@ void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
   }
   const bool stays = hits_hold_;
   if (!stays) find_hits();
-  if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays);
+  if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays, options.reuse_static);
   map_.resize(map_size_, options.geometry);
 }
 
@@ -176,17 +172,27 @@ std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
   return rays;
 }
 
-void PvrrPatch::fit(const RasterView& camera, bool hits_anew) {
+void PvrrPatch::fit(const RasterView& camera, bool hits_anew, bool remember) {
   fitted_for_ = camera;
   const bool was_on_grid = on_pixel_grid_;
   const auto plane = optic_.kind == OpticKind::mirror
                          ? plane_view(optic_, camera, fitted_, optics::in_own_frame(bounds_, placement_))
                          : std::optional<PlaneView>();
   on_pixel_grid_ = plane.has_value();
-  if (hits_anew || plane || was_on_grid) {
+  const bool refines = scene_.settings.max_error_px > 0 && !plane;
+  if (hits_anew || plane || was_on_grid || refines) {
     view_ = plane ? plane->view : fitted_;
-    set_coordinates();
-    drawn_.reset();
+    if (hits_anew || plane || was_on_grid) set_coordinates();
+    coordinates_ = tessellated_coordinates_;
+    if (refines)
+      refine(camera, remember);
+    else
+      refined_surface_.reset();
+    // Another picture of the same mesh from the same place needs the same map.
+    if (hits_anew || plane || was_on_grid || refinement_.mesh_changed()) {
+      show();
+      drawn_.reset();
+    }
   }
   if (plane) {
     set_map_size({plane->texels, 1.0});
@@ -206,17 +212,28 @@ void PvrrPatch::set_map_size(const PvrrMapSize& size) {
 }
 
 void PvrrPatch::set_coordinates() {
+  tessellated_coordinates_ =
+      optic_.kind == OpticKind::mirror
+          ? optics::map_coordinates(optic_, mirror_hits_, view_)
+          : optics::map_coordinates(optic_, lens_rays_.entered, lens_rays_.hits[0], view_);
+}
+
+void PvrrPatch::show() {
   if (optic_.kind == OpticKind::mirror) {
-    coordinates_ = optics::map_coordinates(optic_, mirror_hits_, view_);
-    raster_.optic(index_).set_map_coordinates(coordinates_);
+    RasterOptic& surface = refined_surface_ ? *refined_surface_ : raster_.optic(index_);
+    surface.set_map_coordinates(coordinates_);
     return;
   }
-  coordinates_ = optics::map_coordinates(optic_, lens_rays_.entered, lens_rays_.hits[0], view_);
-  std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
-  for (std::size_t k = 1; k < lens_rays_.hits.size(); ++k)
-    of_samples.push_back(optics::map_coordinates_like(coordinates_, lens_rays_.hits[k], view_));
   lens_.set_shown(seen_surface(), raster_.exit_mask(index_, optics::other_side(lens_rays_.entered)),
-                  lens_rays_, of_samples);
+                  shown_rays(), lens_coordinates());
+}
+
+std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
+  const LensRays& rays = shown_rays();
+  std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
+  for (std::size_t k = 1; k < rays.hits.size(); ++k)
+    of_samples.push_back(optics::map_coordinates_like(coordinates_, rays.hits[k], view_));
+  return of_samples;
 }
 
 void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
@@ -246,14 +263,21 @@ void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
 }
 
 std::span<const VertexHit> PvrrPatch::hits() const {
-  return optic_.kind == OpticKind::mirror ? mirror_hits_ : lens_rays_.hits[0];
+  if (optic_.kind == OpticKind::lens) return shown_rays().hits[0];
+  return refined_surface_ ? refinement_.hits() : mirror_hits_;
+}
+
+const LensRays& PvrrPatch::shown_rays() const {
+  return refined_surface_ ? refined_rays_ : lens_rays_;
 }
 
 const RasterOptic& PvrrPatch::seen_surface() const {
+  if (refined_surface_) return *refined_surface_;
   return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_rays_.entered);
 }
 
 const tessellate::OpticArrays& PvrrPatch::seen_mesh() const {
+  if (refined_surface_) return refinement_.mesh();
   return optic_.kind == OpticKind::mirror ? optic_.mesh : *optics::side_of(optic_, lens_rays_.entered).mesh;
 }
 
@@ -269,11 +293,21 @@ OpticStats PvrrPatch::statistics() const {
                    seen_mesh().vertices.size(),
                    traced_rays_,
                    scene_rays_,
-                   {}};
+                   {},
+                   refinement_rays_};
   if (faces_eye_)
     stats.patches.push_back(
         {placement_.point(view_.viewpoint_mm), view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
   return stats;
+}
+
+std::optional<std::string> PvrrPatch::warning() const {
+  if (!faces_eye_ || !refined_surface_ || !(refinement_.error_left_px() > 0)) return std::nullopt;
+  std::array<char, 16> error{};
+  std::snprintf(error.data(), error.size(), "%.2g", refinement_.error_left_px());
+  return optic_.name + ": its mesh stays at " + std::to_string(seen_mesh().vertices.size()) +
+         " vertices (at most " + std::to_string(kMostRefinedVertices) + "), where edges are off by up to " +
+         error.data() + " px";
 }
 
 }  // namespace catoptra::render

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "optics/lens_path.h"
@@ -14,6 +15,7 @@
 #include "render/src/lens_rays.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/pvrr_map.h"
+#include "render/src/pvrr_refinement.h"
 #include "render/src/raster_lens.h"
 #include "render/src/raster_scene.h"
 
@@ -45,7 +47,7 @@ class PvrrPatch {
   void set_map(glm::dvec2 offset_px, bool geometry) const;
 
   [[nodiscard]] bool faces_eye() const { return faces_eye_; }
-  /// Of the mesh drawn, in the optic's frame; of a lens at the reference wavelength.
+  /// Per vertex of the mesh drawn, in the optic's frame; of a lens at the reference wavelength.
   [[nodiscard]] std::span<const optics::VertexHit> hits() const;
   /// In the optic's frame.
   [[nodiscard]] const optics::VirtualView& view() const { return view_; }
@@ -56,16 +58,23 @@ class PvrrPatch {
   [[nodiscard]] const RasterLens& lens() const { return lens_; }
   /// What the last update() has cost and found.
   [[nodiscard]] OpticStats statistics() const;
+  /// Where the last refinement ended at its limit.
+  [[nodiscard]] std::optional<std::string> warning() const;
 
  private:
   [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;
   void trace(const glm::dvec3& eye_mm);
   void find_hits();
   [[nodiscard]] std::vector<optics::VertexHit> with_hits(std::vector<optics::VertexHit> rays) const;
-  void fit(const RasterView& camera, bool hits_anew);
+  void fit(const RasterView& camera, bool hits_anew, bool remember);
   void set_coordinates();
+  void refine(const RasterView& camera, bool remember);
+  void refine_lens(bool remember);
+  void show();
+  [[nodiscard]] std::vector<std::vector<glm::dvec3>> lens_coordinates() const;
   void set_map_size(const PvrrMapSize& size);
   [[nodiscard]] const tessellate::OpticArrays& seen_mesh() const;
+  [[nodiscard]] const LensRays& shown_rays() const;
   [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
 
   const Scene& scene_;
@@ -89,9 +98,18 @@ class PvrrPatch {
   LensRays lens_rays_;
   optics::VirtualView fitted_;
 
+  // Of the mesh as tessellated where nothing is refined, else of that of refinement_.
+  PvrrRefinement refinement_;
+  std::unique_ptr<RasterOptic> refined_surface_;  ///< null where nothing is refined
+  optics::Optic refined_lens_;                    ///< the lens with the refined mesh
+  std::optional<glm::dvec3> refined_from_;        ///< the eye that refined_paths_ belong to
+  LensRays refined_paths_, refined_rays_;         ///< without and with what they meet
+
   std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
   optics::VirtualView view_;
-  bool on_pixel_grid_ = false;           ///< the view is that of plane_view()
+  bool on_pixel_grid_ = false;  ///< the view is that of plane_view()
+  std::vector<glm::dvec3>
+      tessellated_coordinates_;          ///< of the mesh as tessellated, in fitted_ or the plane's view
   std::vector<glm::dvec3> coordinates_;  ///< of a lens at the reference wavelength
   PvrrMapSize map_size_;
   RasterLens lens_;
@@ -102,7 +120,7 @@ class PvrrPatch {
   };
   std::optional<Drawn> drawn_;  ///< what the map holds
   PvrrMap map_;
-  std::size_t traced_rays_ = 0, scene_rays_ = 0;
+  std::size_t traced_rays_ = 0, scene_rays_ = 0, refinement_rays_ = 0;
 };
 
 }  // namespace catoptra::render

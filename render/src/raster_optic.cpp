@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -27,12 +26,15 @@ double radius_about(const tessellate::OpticArrays& mesh, const glm::dvec3& cente
 }
 
 std::vector<std::uint32_t> unique_edges(const tessellate::OpticArrays& mesh) {
-  std::set<Edge> edges;
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(triangle.vertices[k], triangle.vertices[(k + 1) % 3]);
-      edges.emplace(a, b);
+      edges.emplace_back(a, b);
     }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<std::uint32_t> indices;
   indices.reserve(2 * edges.size());
   for (const auto& [a, b] : edges) {
@@ -117,7 +119,8 @@ glm::dvec3 area_centroid(const tessellate::OpticArrays& mesh) {
   return area > 0 ? sum / area : glm::dvec3(0);
 }
 
-RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh) : center_mm_(area_centroid(mesh)) {
+RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt)
+    : center_mm_(area_centroid(mesh)) {
   std::vector<Vertex> vertices;
   vertices.reserve(mesh.vertices.size());
   for (const auto& v : mesh.vertices)
@@ -127,7 +130,7 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh) : center_mm_(area_
   for (const auto& t : mesh.triangles)
     triangles.insert(triangles.end(), t.vertices.begin(), t.vertices.end());
   const std::vector<std::uint32_t> edges = unique_edges(mesh);
-  const std::vector<Vertex> skirt = make_skirt(mesh, center_mm_);
+  const std::vector<Vertex> skirt = with_skirt ? make_skirt(mesh, center_mm_) : std::vector<Vertex>();
 
   for (const Vertex& vertex : vertices) points_.push_back(vertex.position);
   for (const Vertex& vertex : skirt) points_.push_back(vertex.position);

@@ -16,7 +16,8 @@ namespace catoptra::render {
 /// position relative to `center_mm`, normal, map coordinates.
 class RasterOptic {
  public:
-  explicit RasterOptic(const tessellate::OpticArrays& mesh);
+  /// Without a skirt, draw_surface_with_skirt() draws the surface alone.
+  explicit RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt = true);
 
   /// Homogeneous map coordinates (s q, t q, q), one per vertex of the mesh.
   void set_map_coordinates(std::span<const glm::dvec3> coordinates);

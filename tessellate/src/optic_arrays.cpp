@@ -57,6 +57,13 @@ class Flattener {
     for (std::size_t k = 0; k < 3; ++k, half_edge = mesh_.next_halfedge_handle(half_edge)) {
       triangle.uv[k] = mesh_.data(half_edge).uv;
       triangle.vertices[k] = entry(mesh_.to_vertex_handle(half_edge), triangle.face, triangle.uv[k]);
+      const auto edge = mesh_.edge_handle(half_edge);
+      const auto& data = mesh_.data(edge);
+      if (data.cad_edge < 0) continue;
+      const bool along = mesh_.halfedge_handle(edge, 0) == half_edge;
+      arrays_.borders.push_back({static_cast<std::uint32_t>(arrays_.triangles.size()),
+                                 static_cast<std::uint8_t>((k + 2) % 3), data.cad_edge,
+                                 along ? data.t_from : data.t_to, along ? data.t_to : data.t_from});
     }
     arrays_.triangles.push_back(triangle);
   }

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "tessellate/optic_mesh.h"
+#include "tessellate/src/edge_use.h"
 #include "tessellate/src/mesh_draft.h"
 
 namespace catoptra::tessellate {
@@ -14,22 +15,6 @@ using Mesh = HalfEdgeMesh;
 
 std::size_t index(OpenMesh::BaseHandle handle) {
   return static_cast<std::size_t>(handle.idx());
-}
-
-/// The use of `cad_edge` by the face that passes nearest to `uv` at `t`: a seam is used twice.
-const EdgeUse* find_use(const Face& face, int cad_edge, double t, const glm::dvec2& uv) {
-  const EdgeUse* best = nullptr;
-  double best_distance = 0;
-  for (const auto& loop : face.loops)
-    for (const auto& use : loop.edges) {
-      if (use.edge != cad_edge || use.degenerate) continue;
-      const double distance = glm::distance(use.curve->uv(t), uv);
-      if (!best || distance < best_distance) {
-        best = &use;
-        best_distance = distance;
-      }
-    }
-  return best;
 }
 
 class Subdivider {

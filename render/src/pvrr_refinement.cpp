@@ -1,0 +1,280 @@
+#include "render/src/pvrr_refinement.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
+#include <numeric>
+
+#include "optics/map_coordinates.h"
+#include "render/src/lens_rays.h"
+
+namespace catoptra::render {
+namespace {
+
+using optics::VertexHit;
+using tessellate::EdgeMiddle;
+
+// Inside a triangle, where the error is a quadratic function, it is at most 4/3 of the largest at the middles
+// of its edges (at the centre: 8/18 of the sum of the three).
+constexpr double kSplit = 0.75;
+// Edges that are split stay so down to this share of that, so that a mesh does not flicker while an error
+// passes the limit slowly. One split more divides errors by four: the band is narrower than a level.
+constexpr double kKeep = 0.5;
+// Each level divides a smooth error by four: this is a factor of 1e6.
+constexpr int kMostLevels = 10;
+// Edges that lie outside the picture by this share of its size on one side are left alone.
+constexpr double kOffScreen = 0.1;
+// Where an optic magnifies, against the direct view, by more than this, what it shows between two pixels is
+// less than the error can be told from: near a caustic one pixel shows (nearly) one direction only.
+constexpr double kMostMagnification = 20;
+constexpr std::size_t kEdgesPerTask = 64;
+
+struct Place {
+  glm::dvec3 right, up;  ///< unit, across the eye's ray
+  glm::dmat2 pixels;     ///< pixels per mm of movement along them
+};
+
+/// How the picture moves with a point at `at_mm`.
+Place place_of(const RasterView& camera, const glm::dvec3& at_mm) {
+  const glm::dvec3 ray = glm::normalize(at_mm - camera.origin_mm);
+  const glm::dvec3 other = std::abs(ray.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  Place place;
+  place.right = glm::normalize(glm::cross(ray, other));
+  place.up = glm::cross(place.right, ray);
+  const double step = 1e-4 * glm::distance(at_mm, camera.origin_mm);
+  const auto change = [&](const glm::dvec3& along) {
+    return glm::dvec2(camera.pixel(at_mm + step * along) - camera.pixel(at_mm - step * along)) / (2 * step);
+  };
+  place.pixels = glm::dmat2(change(place.right), change(place.up));
+  return place;
+}
+
+bool off_screen(const RasterView& camera, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec2 margin = kOffScreen * glm::dvec2(camera.size);
+  return (a.z <= 0 || b.z <= 0) || std::max(a.x, b.x) < -margin.x ||
+         std::min(a.x, b.x) > camera.size.x + margin.x || std::max(a.y, b.y) < -margin.y ||
+         std::min(a.y, b.y) > camera.size.y + margin.y;
+}
+
+/// 1 / distance from the optic to what the ray meets; 0: the sky.
+double nearness(const VertexHit& hit) {
+  return hit.scene_hit ? 1 / std::max(hit.scene_hit.t_mm, optics::kSelfHitDistance_mm) : 0;
+}
+
+/// The exact ray, to second order, of the eye's ray through `point_mm` of the flat edge, from that through
+/// the exact surface near it. It is given a hit as far away as the ends' hits are: not the scene's own, so
+/// that where the ends meet different things no step of depth passes for an error of interpolation.
+VertexHit ray_through(const VertexHit& middle, const glm::dvec3& offset_mm, double near) {
+  VertexHit ray = middle;
+  ray.surface_point_mm += middle.differential.point * offset_mm;
+  ray.direction = glm::normalize(middle.direction + middle.differential.direction * offset_mm);
+  ray.scene_hit = {};
+  if (!(near > 0)) return ray;
+  ray.scene_hit.t_mm = 1 / near;
+  ray.scene_hit.object = 0;
+  ray.hit_point_mm = ray.surface_point_mm + ray.direction / near;
+  return ray;
+}
+
+/// Angle, as a vector across the ray, between the exact ray and what is shown instead, from where the map
+/// shows it: `off` in map coordinates.
+glm::dvec3 angle_of(const optics::VirtualView& view, const VertexHit& ray, double near, glm::dvec2 off) {
+  const glm::dvec3 step =
+      off.x * (view.right_side - view.left) * view.right + off.y * (view.top - view.bottom) * view.up;
+  // Times the depth in the map, over the distance.
+  double scale = near;
+  if (view.projection == optics::MapProjection::perspective)
+    scale = near > 0 ? std::abs(glm::dot(ray.hit_point_mm - view.viewpoint_mm, view.direction)) * near
+                     : std::abs(glm::dot(ray.direction, view.direction));
+  const glm::dvec3 angle = scale * step;
+  return angle - glm::dot(angle, ray.direction) * ray.direction;
+}
+
+/// The step on the picture, in pixels, over which the exact rays turn by `angle`.
+double in_pixels(const Place& place, const VertexHit& ray, double near, double eye_distance_mm,
+                 const glm::dvec3& angle) {
+  const auto turn = [&](const glm::dvec3& along) {
+    const glm::dvec3 t = ray.differential.direction * along + near * (ray.differential.point * along);
+    return t - glm::dot(t, ray.direction) * ray.direction;
+  };
+  const glm::dvec3 jx = turn(place.right), jy = turn(place.up);
+  // Least squares, damped where the turn per mm is below that of the direct view over kMostMagnification.
+  const double least = 1 / (kMostMagnification * eye_distance_mm);
+  const double a = glm::dot(jx, jx) + least * least, b = glm::dot(jx, jy),
+               c = glm::dot(jy, jy) + least * least, determinant = a * c - b * b;
+  const double u = glm::dot(jx, angle), v = glm::dot(jy, angle);
+  const glm::dvec2 moved_mm((c * u - b * v) / determinant, (a * v - b * u) / determinant);
+  return glm::length(place.pixels * moved_mm);
+}
+
+}  // namespace
+
+void PvrrRefinement::prepare(const RefinementRequest& request) {
+  const auto side = request.optic.kind == optics::OpticKind::lens
+                        ? optics::side_of(request.optic, request.entered)
+                        : optics::LensSideView{request.optic.faces, &request.optic.mesh};
+  if (!mesh_ || side_ != request.entered) {
+    mesh_.emplace(side.faces, *side.mesh);
+    side_ = request.entered;
+    known_.clear();
+    was_split_.clear();
+    nodes_.clear();
+  } else {
+    mesh_->restart();
+  }
+  if (!request.remember) was_split_.clear();
+  if (!request.remember || eye_mm_ != request.eye_mm) known_.clear();
+  eye_mm_ = request.eye_mm;
+  hits_.assign(request.hits.begin(), request.hits.end());
+  coordinates_.assign(request.coordinates.begin(), request.coordinates.end());
+  traced_rays_ = scene_rays_ = 0;
+  error_left_px_ = 0;
+}
+
+void PvrrRefinement::refine(const RefinementRequest& request) {
+  prepare(request);
+  std::vector<char> split_now;
+  for (int level = 0; level < kMostLevels; ++level) {
+    const std::vector<char> wanted = choose(request, edge_errors(request));
+    if (std::find(wanted.begin(), wanted.end(), char(1)) == wanted.end()) break;
+    split_now.resize(mesh_->node_count(), 0);
+    const auto edges = mesh_->new_edges();
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      if (wanted[i]) split_now[edges[i].node] = 1;
+    mesh_->split(wanted);
+    add_vertices(request);
+  }
+  was_split_ = std::move(split_now);
+  const auto nodes = mesh_->nodes();
+  changed_ = !std::equal(nodes.begin(), nodes.end(), nodes_.begin(), nodes_.end());
+  if (changed_) nodes_.assign(nodes.begin(), nodes.end());
+}
+
+void PvrrRefinement::trace_middles(const RefinementRequest& request, std::span<const char> asked) {
+  const auto edges = mesh_->new_edges();
+  rays_.resize(mesh_->node_count());
+  known_.resize(mesh_->node_count(), 0);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (asked[i] && !known_[edges[i].node]) missing.push_back(i);
+  traced_rays_ += missing.size();
+  const bool lens = request.optic.kind == optics::OpticKind::lens;
+  const auto indices = lens ? optics::lens_indices(request.optic, samples_of(request.optic)[0].wavelength_nm)
+                            : optics::LensIndices();
+  // Every node belongs to one edge, so that no two tasks write the same entry.
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), kEdgesPerTask), [&](const auto& some) {
+    for (std::size_t k = some.begin(); k < some.end(); ++k) {
+      const EdgeMiddle& edge = edges[missing[k]];
+      const auto& vertex = mesh_->middle(edge);
+      rays_[edge.node] = lens ? optics::refract_vertex(vertex, request.optic, *request.tracer,
+                                                       request.entered, indices, eye_mm_)
+                              : optics::reflect_vertex(vertex, request.optic, eye_mm_);
+      known_[edge.node] = 1;
+    }
+  });
+}
+
+std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request) {
+  const auto edges = mesh_->new_edges();
+  const auto& vertices = mesh_->mesh().vertices;
+  std::vector<glm::dvec3> pixels(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) pixels[i] = request.camera.pixel(vertices[i].position_mm);
+  std::vector<char> asked(edges.size(), 0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i].ends;
+    asked[i] = passes(hits_[a]) && passes(hits_[b]) && !off_screen(request.camera, pixels[a], pixels[b]);
+  }
+  trace_middles(request, asked);
+
+  std::vector<glm::dvec3> shown(edges.size(), glm::dvec3(0.5, 0.5, 1));
+  std::vector<VertexHit> rays(edges.size());
+  std::vector<double> near(edges.size(), 0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i].ends;
+    asked[i] = asked[i] && passes(rays_[edges[i].node]);
+    if (!asked[i]) continue;
+    const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
+    near[i] = 0.5 * (nearness(hits_[a]) + nearness(hits_[b]));
+    rays[i] = ray_through(rays_[edges[i].node], point - mesh_->middle(edges[i]).position_mm, near[i]);
+    shown[i] = 0.5 * (coordinates_[a] + coordinates_[b]);
+  }
+  const auto exact = optics::map_coordinates_like(shown, rays, request.view);
+
+  std::vector<double> errors(edges.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), kEdgesPerTask), [&](const auto& some) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i) {
+      if (!asked[i]) continue;
+      const auto [a, b] = edges[i].ends;
+      const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
+      const glm::dvec2 off = glm::dvec2(shown[i]) / shown[i].z - glm::dvec2(exact[i]) / exact[i].z;
+      const double error =
+          in_pixels(place_of(request.camera, point), rays[i], near[i], glm::distance(point, eye_mm_),
+                    angle_of(request.view, rays[i], near[i], off));
+      // No error is larger than the edge: it is what an edge next to a caustic or the map's horizon gives.
+      const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b]));
+      errors[i] = std::isfinite(error) ? std::min(error, length_px) : length_px;
+    }
+  });
+  return errors;
+}
+
+std::vector<char> PvrrRefinement::choose(const RefinementRequest& request, std::span<const double> errors) {
+  const auto edges = mesh_->new_edges();
+  std::vector<char> wanted(edges.size(), 0);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const std::uint32_t node = edges[i].node;
+    const bool was = node < was_split_.size() && was_split_[node];
+    if (errors[i] > kSplit * request.max_error_px * (was ? kKeep : 1.0)) chosen.push_back(i);
+  }
+  keep_to_limit(chosen, errors);
+  for (const std::size_t i : chosen) wanted[i] = 1;
+  return wanted;
+}
+
+void PvrrRefinement::keep_to_limit(std::vector<std::size_t>& chosen, std::span<const double> errors) {
+  const auto edges = mesh_->new_edges();
+  const std::size_t vertices = mesh_->mesh().vertices.size();
+  if (edges.empty() || vertices + edges.size() <= kMostRefinedVertices) return;
+  std::vector<std::size_t> group_size(edges.back().group + 1, 0);
+  for (const EdgeMiddle& edge : edges) ++group_size[edge.group];
+  // The worst first; of equal ones those that come first.
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+  std::size_t count = vertices;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    std::size_t& size = group_size[edges[chosen[k]].group];
+    if (count + size > kMostRefinedVertices) {
+      error_left_px_ = std::max(error_left_px_, errors[chosen[k]]);
+      chosen.resize(k);
+      return;
+    }
+    count += size;
+    size = 0;  // the others of its group come with it
+  }
+}
+
+void PvrrRefinement::add_vertices(const RefinementRequest& request) {
+  const auto parents = mesh_->parents();
+  const auto nodes = mesh_->nodes();
+  const std::size_t base = request.hits.size(), known = hits_.size(), count = nodes.size();
+  std::vector<VertexHit> added;
+  std::vector<glm::dvec3> between;
+  for (std::size_t i = known; i < count; ++i) {
+    // What comes along because the face at the other side of a crease is split may show nothing.
+    added.push_back(known_[nodes[i]] ? rays_[nodes[i]] : VertexHit{});
+    const auto [a, b] = parents[i - base];
+    between.push_back(0.5 * (coordinates_[a] + coordinates_[b]));
+  }
+  scene_rays_ += added.size();
+  added = request.with_scene_hits(std::move(added));
+  const auto coordinates = optics::map_coordinates_like(between, added, request.view);
+  hits_.insert(hits_.end(), added.begin(), added.end());
+  coordinates_.insert(coordinates_.end(), coordinates.begin(), coordinates.end());
+}
+
+}  // namespace catoptra::render
