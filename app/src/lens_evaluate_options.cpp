@@ -176,7 +176,9 @@ LensOrder order_of(const LensEvaluateOptions& options) {
                  checked("--ordered-axis", options.axis.value_or(180), 0, 180) * kRadians};
   const double prism = checked("--ordered-prism", options.prism.value_or(0), 0, 100);
   const double base = checked("--ordered-base-deg", options.base.value_or(0), 0, 360) * kRadians;
-  order.prism = prism * glm::dvec2(std::cos(base), std::sin(base));
+  // Rounded, so that a base straight up has nothing to the side.
+  const auto component = [&](double share) { return std::round(prism * share * 1e12) / 1e12 + 0.0; };
+  order.prism = {component(std::cos(base)), component(std::sin(base))};
   order.addition_d = checked("--ordered-add", options.add.value_or(0), 0, 20);
   if (options.front_curve)
     order.front_curve_d = checked("--ordered-front-curve", *options.front_curve, -100, 100);

@@ -11,7 +11,8 @@ std::vector<std::string> read_names(const TomlTable& table, std::string_view key
   const toml::node* node = table.node(key);
   if (!node) return {};
   const toml::array* array = node->as_array();
-  if (!array || array->empty()) table.fail(key, "expected an array of names of surroundings");
+  if (!array || array->empty())
+    table.fail(key, "expected an array of one or more names of surroundings; left out, all of them are in the way");
   std::vector<std::string> names;
   for (const toml::node& element : *array) {
     if (!element.is_string()) table.fail(key, "expected an array of names of surroundings");
