@@ -1,6 +1,7 @@
 // catoptra lens evaluate: what it measures, and the shape of its reports.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 
@@ -246,6 +247,34 @@ TEST(LensEvaluate, TextTellsReadingAndTable) {
   }
   ASSERT_EQ(widths.size(), 31u);
   for (const std::size_t width : widths) EXPECT_EQ(width, widths.front());
+}
+
+/// Distortion compares lines of sight: a focimeter's reading has none, and 0.00 would be a claim.
+TEST(LensEvaluate, FocimeterHasNoDistortion) {
+  const TemporaryFolder folder;
+  const std::string file = make_lens(folder, {"--sph", "-4"});
+  const auto last_row = [&](const char* mode) {
+    const CommandResult result =
+        run_catoptra({"lens", "evaluate", file, "--index", "1.5", "--mode", mode, "--gaze", "30,0"});
+    EXPECT_EQ(result.code, 0) << result.errors;
+    std::istringstream lines(result.output);
+    std::vector<std::string> cells;
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+      if (!found.empty() && found[0] == "30.0") cells = found;
+    }
+    return cells;
+  };
+  ASSERT_EQ(last_row("lensmeter").size(), 17u);
+  EXPECT_EQ(last_row("lensmeter")[15], "-");
+  EXPECT_GT(std::stod(last_row("as-worn")[15]), 1);
+  EXPECT_EQ(evaluate(file, {"--index", "1.5"}).at("points").at(0).at("distortion"), nullptr);
+  EXPECT_TRUE(evaluate(file, {"--index", "1.5", "--mode", "as-worn"})
+                  .at("points")
+                  .at(0)
+                  .at("distortion")
+                  .is_number());
 }
 
 }  // namespace
