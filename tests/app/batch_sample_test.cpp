@@ -297,7 +297,7 @@ TEST(BatchSample, WhatIsWrongIsToldWithItsLine) {
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"smaple = { count = 3, seed = 1 }\n" + lens, "line 1, smaple: unknown key (did you mean 'sample'?)"},
       {"sample = { count = 3 }\n" + lens, "sample.seed: this key is required"},
-      {"sample = { cuont = 3, seed = 1 }\n" + lens, "did you mean 'count'?"},
+      {"sample = { cont = 3, seed = 1 }\n" + lens, "did you mean 'count'?"},
       {"sample = 3\n" + lens, "line 1, sample: expected a table"},
       {sample + lens + "[[poses]]\nsample = { count = 3, seed = 1 }\n",
        "line 5, poses.sample: the sample of the whole plan draws the poses already"},
@@ -315,7 +315,7 @@ TEST(BatchSample, WhatIsWrongIsToldWithItsLine) {
       {sample + lens + "sph = { mean = 8, sd = 1, min = 8, max = 8.05 }\n", "nearer to one another"},
       {sample + lens + "sph = { mean = 8, sd = 1, min = 5, max = 11, step = 1 }\n",
        "mean and sd exclude 'step'"},
-      {sample + lens + "sph = { maen = 8, sd = 1, min = 5, max = 11 }\n", "did you mean 'mean'?"},
+      {sample + lens + "sph = { men = 8, sd = 1, min = 5, max = 11 }\n", "did you mean 'mean'?"},
       {sample + lens + "[[poses]]\nvertex_distance_mm = { mean = 1, sd = 1, min = -1, max = 3 }\n",
        "vertex_distance_mm.min: -1 is out of range"},
       {sample + "[[prescriptions]]\nmaterial = { nd = { from = 0.9, to = 1.5 }, vd = 40 }\n",
