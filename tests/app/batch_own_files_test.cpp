@@ -102,9 +102,12 @@ TEST(BatchSides, AreChosenByTheirNames) {
     return app::result_from_json(app::evaluate_case(app::to_json(c)));
   };
   const auto a = line(recognised), b = line(named), c = line(exchanged), d = line(misspelt);
-  EXPECT_EQ(a.summary, b.summary);
-  EXPECT_EQ(a.points, b.points);
-  EXPECT_NE(a.summary, c.summary) << "other sides, another lens";
+  const auto numbers = [](app::BatchResult result) {
+    result.key.clear();
+    return app::to_json(result);  // where no value equals no value
+  };
+  EXPECT_EQ(numbers(a), numbers(b));
+  EXPECT_NE(numbers(a), numbers(c)) << "other sides, another lens";
   EXPECT_NE(d.error.find("did you mean 'front'?"), std::string::npos) << d.error;
   EXPECT_NE(refusal(folder, "[[lenses]]\nfiles = [\"lens.step\"]\nmaterial = 1.5\nfront_faces = 3\n")
                 .find("line 4, lenses.front_faces"),
@@ -127,8 +130,12 @@ TEST(BatchOutline, GivesTheLensOfLensMake) {
   const auto a = app::evaluate_case(ordered), b = app::evaluate_case(filed);
   ASSERT_EQ(a.error + b.error, "");
   EXPECT_LT(value_of(a, "points_passed"), value_of(a, "points")) << "some gazes pass beside this small lens";
-  for (std::size_t i = 0; i < a.summary.size(); ++i)  // STEP writes 15 digits
-    if (std::isfinite(a.summary[i])) EXPECT_NEAR(a.summary[i], b.summary[i], 1e-6);
+  for (std::size_t i = 0; i < a.summary.size(); ++i) {
+    const std::string& name = app::batch_columns().summary[i];
+    if (name == "reference_prism_base_deg") continue;  // of a prism of 1e-9: rounding
+    EXPECT_TRUE(std::isnan(a.summary[i]) || std::abs(a.summary[i] - b.summary[i]) < 1e-6)  // STEP: 15 digits
+        << name << ": " << a.summary[i] << ", " << b.summary[i];
+  }
   EXPECT_NE(ordered.key, read(folder, "[[prescriptions]]\nsph = -4\nmaterial = 1.5\n" + pose).cases[0].key);
 }
 
