@@ -52,12 +52,9 @@ PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh, std::span<const
 }
 
 void PvrrMap::resize(const PvrrMapSize& size, bool geometry) {
+  if (size.texels != size_.texels) optic_depth_ = GlTexture();
   size_ = size;
   RasterTarget::fit(target_, size.texels, geometry);
-  if (optic_depth_ && view_.size == size.texels) return;
-  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size.texels.x, size.texels.y, 1, false);
-  optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
-  view_.size = size.texels;
 }
 
 void PvrrMap::set_empty(bool geometry) {
@@ -67,26 +64,50 @@ void PvrrMap::set_empty(bool geometry) {
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
-void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry) {
-  view_ = map_view(view, size_.texels, offset_px);
-  clipped_ = !view.beyond_viewpoint;
-  if (clipped_) {
-    glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
-    scene.draw_optic_depth(view_, surface);
+void PvrrMap::draw_optic_depth(RasterScene& scene, const RasterView& view, const RasterOptic& surface,
+                               bool zooming) {
+  if (!optic_depth_) {
+    optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size_.texels.x, size_.texels.y, 1, false);
+    optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
   }
+  glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
+  scene.draw_optic_depth(view, surface, zooming);
+}
+
+void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
+                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   RasterPass pass;
   pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
   pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
-  pass.clip_depth = clip_depth();
-  // A little farther than the surface is, so that rounding decides nothing.
-  const double farthest = clipped_ ? surface.farthest_mm(view_) : 0;
-  pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   pass.draw_optics = true;
   pass.except = optic;
+  // A little farther than the surface is, so that rounding decides nothing.
+  const auto clip = [&](const RasterView& by) {
+    draw_optic_depth(scene, by, surface, pass.zooming);
+    pass.clip_depth = &optic_depth_;
+    const double farthest = surface.farthest_mm(by);
+    pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
+  };
+  const auto add_overlay = [&](const RasterView& by) {
+    if (!overlay) return;
+    target_->bind(false);
+    overlay->draw_in_scene(by, pass.clip_depth, pass.zooming);
+  };
+  const RasterView beyond = map_view(view, size_.texels, offset_px);
+  if (!view.beyond_viewpoint) clip(beyond);
   target_->bind(geometry);
-  scene.draw(view_, pass);
+  scene.draw(beyond, pass);
+  add_overlay(beyond);
+  if (!view.zooms()) return;
+
+  const RasterView before = zooming_view(view, size_.texels, offset_px);
+  pass.zooming = true;
+  if (!scene.sees_anything(before, pass)) return;
+  clip(before);
+  target_->bind(geometry);
+  scene.draw_zooming(before, pass);
+  add_overlay(before);
 }
 
 }  // namespace catoptra::render

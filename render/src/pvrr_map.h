@@ -6,6 +6,7 @@
 #include <span>
 
 #include "optics/virtual_view.h"
+#include "render/src/overlay_vertices.h"
 #include "render/src/raster_scene.h"
 #include "render/src/raster_target.h"
 
@@ -44,28 +45,26 @@ class PvrrMap {
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
 
-  /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies.
+  /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies, and
+  /// an `overlay` (or null).
   /// What lies between viewpoint and `surface`, the last that the light meets (that is, behind the mirror, or
-  /// on this side of the lens), is cut per fragment by its depth, unless the rays converge in front of it.
-  /// `offset_px`: place of the samples within a texel.
+  /// on this side of the lens), is cut per fragment by its depth. Where the rays converge in front of it, the
+  /// zooming region is drawn over the reversed one: light meets it first (design 2.10), and both have the
+  /// same map coordinates. What it holds is cut by the surface's depth from the other side. `offset_px`:
+  /// place of the samples within a texel.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry);
-
-  /// The view of the last draw(), with its depth of the optic (null where nothing is cut) for what is drawn
-  /// on top.
-  [[nodiscard]] const RasterView& view() const { return view_; }
-  [[nodiscard]] const GlTexture* clip_depth() const { return clipped_ ? &optic_depth_ : nullptr; }
+            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
   [[nodiscard]] const RasterTarget& target() const { return *target_; }
   [[nodiscard]] const PvrrMapSize& size() const { return size_; }
 
  private:
+  void draw_optic_depth(RasterScene& scene, const RasterView& view, const RasterOptic& surface, bool zooming);
+
   PvrrMapSize size_;
   std::unique_ptr<RasterTarget> target_;
-  GlTexture optic_depth_;
+  GlTexture optic_depth_;  ///< of the map's size
   GlFramebuffer optic_depth_framebuffer_;
-  RasterView view_;
-  bool clipped_ = false;
 };
 
 }  // namespace catoptra::render

@@ -228,10 +228,28 @@ void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
 
 void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
   if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
-  draw_surroundings(view, pass);
+  draw_chunks(view, pass, draws_of(view, pass));
   if (pass.draw_optics) draw_optics(view, pass);
   // A sky of one colour without geometry is the cleared background itself.
   if (sky_ || pass.geometry) draw_sky(pass);
+}
+
+bool RasterScene::sees_anything(const RasterView& view, const RasterPass& pass) const {
+  for (std::size_t i = 0; i < optics_.size() && pass.draw_optics; ++i)
+    if (pass.except != i && scene_.optics[i].kind == optics::OpticKind::mirror) return true;
+  return std::any_of(chunks_.begin(), chunks_.end(),
+                     [&](const Chunk& chunk) { return box_in_view(view, chunk.triangles.box).seen; });
+}
+
+void RasterScene::draw_zooming(const RasterView& view, const RasterPass& pass) {
+  begin_view(view, pass.level_bias);
+  const float farthest = 1;
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  glDepthFunc(GL_LESS);
+  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
+  draw_chunks(view, pass, draws_of(view, pass));
+  if (pass.draw_optics) draw_optics(view, pass);
+  glDepthFunc(GL_GREATER);
 }
 
 std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, const RasterPass& pass) const {
@@ -239,7 +257,8 @@ std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, con
   for (std::size_t i = 0; i < chunks_.size(); ++i) {
     const BoxInView box = box_in_view(view, chunks_[i].triangles.box);
     if (!box.seen) continue;
-    Draw draw{i, box.nearest_mm, pass.clip_depth && box.nearest_mm <= pass.clip_reach_mm};
+    // Of a box around the viewpoint box_in_view() does not tell how far it reaches back.
+    Draw draw{i, box.nearest_mm, pass.clip_depth && (pass.zooming || box.nearest_mm <= pass.clip_reach_mm)};
     const TriangleChunk& chunk = chunks_[i].triangles;
     // Few triangles in a large box, as of walls along a street, are seldom near where their box is.
     if (draw.clip && chunk.count <= 3 * kFewTriangles) {
@@ -268,15 +287,14 @@ void RasterScene::set_material(const Batch& batch) const {
   if (batch.alpha_test) glUniform2f(kAlpha, batch.alpha, batch.cutoff);
 }
 
-void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pass) {
+void RasterScene::draw_chunks(const RasterView& view, const RasterPass& pass, std::span<const Draw> draws) {
   glBindVertexArray(surroundings_.id());
   GLuint program = 0;
   const Batch* material = nullptr;
-  for (const Draw& draw : draws_of(view, pass)) {
+  for (const Draw& draw : draws) {
     const Chunk& chunk = chunks_[draw.chunk];
     const Batch& batch = batches_[chunk.batch];
-    const GLuint wanted =
-        surface_program(batch.texture >= 0, batch.alpha_test, draw.clip, pass.geometry).id();
+    const GLuint wanted = surface_program(batch.texture >= 0, batch.alpha_test, pass, draw.clip).id();
     if (wanted != program) {
       glUseProgram(program = wanted);
       set_mesh_origin(view, glm::dvec3(0));
@@ -290,7 +308,7 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
 }
 
 void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
-  glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
+  glUseProgram(surface_program(false, false, pass, pass.clip_depth != nullptr).id());
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
     set_mesh_origin(view, optics_[i]);
@@ -308,12 +326,13 @@ void RasterScene::draw_sky(const RasterPass& pass) {
   glDepthFunc(GL_GREATER);
 }
 
-void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface) {
+void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface, bool zooming) {
   begin_view(view, 0);
-  const float nearest = 1;
-  glClearBufferfv(GL_DEPTH, 0, &nearest);
-  glDepthFunc(GL_LESS);
+  const float none = zooming ? 0 : 1;
+  glClearBufferfv(GL_DEPTH, 0, &none);
+  glDepthFunc(zooming ? GL_GREATER : GL_LESS);
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
+  // (In the zooming region, where less depth is farther from the viewpoint, all is.)
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
   set_mesh_origin(view, surface);
@@ -322,16 +341,18 @@ void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& su
   glDepthFunc(GL_GREATER);
 }
 
-const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bool clip, bool geometry) {
-  const unsigned key =
-      unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
+const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, const RasterPass& pass,
+                                              bool clip) {
+  const unsigned key = unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 |
+                       unsigned(pass.geometry) << 3 | unsigned(pass.zooming) << 4;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
   std::vector<std::string> defines = shading_defines();
   if (textured) defines.emplace_back("TEXTURED");
   if (alpha_test) defines.emplace_back("ALPHA_TEST");
   if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
-  if (geometry) defines.emplace_back("GEOMETRY");
+  if (pass.zooming) defines.emplace_back("ZOOMING");
+  if (pass.geometry) defines.emplace_back("GEOMETRY");
   return surface_programs_
       .emplace(key,
                make_program({"raster_view.glsl", "raster_surface.vert.glsl"},

@@ -28,8 +28,9 @@ struct RasterPass {
   float level_bias = 0;   ///< added to the textures' level of detail (maps: see PvrrMap)
   const GlTexture* clip_depth = nullptr;  ///< depth of the optic in this view: what is nearer is not drawn
   double clip_reach_mm = 0;               ///< that depth is nowhere beyond this distance along the view
-  bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
-  std::optional<std::size_t> except;      ///< ... but not this one
+  bool zooming = false;      ///< the view is a zooming_view(): less depth hides more, also of the optic
+  bool draw_optics = false;  ///< the mirrors as diffuse bodies of their reflectance ...
+  std::optional<std::size_t> except;  ///< ... but not this one
 };
 
 /// Everything static is uploaded once, positions in the meshes' own coordinates. Needs a current context
@@ -59,11 +60,17 @@ class RasterScene {
   /// The same in two steps. What is drawn between them hides what is behind it before that costs anything.
   void clear(const RasterView& view, const RasterPass& pass);
   void draw_all(const RasterView& view, const RasterPass& pass);
+  /// Whether any chunk of the surroundings, or of `pass` an optic, may lie in the view.
+  [[nodiscard]] bool sees_anything(const RasterView& view, const RasterPass& pass) const;
+  /// Draws surroundings and optics of a zooming_view() over what is in the bound target, which lies behind
+  /// them; clears its depth.
+  void draw_zooming(const RasterView& view, const RasterPass& pass);
 
   /// Draws only the depth of an optical surface and of its continuation beyond the border, the farthest where
   /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
-  /// alone.
-  void draw_optic_depth(const RasterView& view, const RasterOptic& surface);
+  /// alone. Of a zooming_view() it is the depth nearest to the viewpoint, 0 where there is none: in both the
+  /// surface that the light meets last.
+  void draw_optic_depth(const RasterView& view, const RasterOptic& surface, bool zooming = false);
 
   /// Makes `view` that of the following draws; draw() does so itself.
   void begin_view(const RasterView& view, float level_bias) const;
@@ -101,12 +108,12 @@ class RasterScene {
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
-  void draw_surroundings(const RasterView& view, const RasterPass& pass);
+  void draw_chunks(const RasterView& view, const RasterPass& pass, std::span<const Draw> draws);
   void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);
   /// Compiled on first use, for each combination of the shader's variants.
-  const GlProgram& surface_program(bool textured, bool alpha_test, bool clip, bool geometry);
+  const GlProgram& surface_program(bool textured, bool alpha_test, const RasterPass& pass, bool clip);
   const GlProgram& sky_program(bool geometry);
 
   const Scene& scene_;

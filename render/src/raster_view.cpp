@@ -33,6 +33,18 @@ void offset_samples(glm::dmat4& projection, glm::ivec2 size, glm::dvec2 offset_p
   }
 }
 
+RasterView view_by(const optics::VirtualView& view, const glm::dmat4& projection, glm::ivec2 size,
+                   glm::dvec2 offset_px) {
+  RasterView raster;
+  const glm::dmat4 eye_from_world = view.view_matrix();
+  raster.rotation = glm::dmat3(eye_from_world);
+  raster.origin_mm = -(glm::transpose(raster.rotation) * glm::dvec3(eye_from_world[3]));
+  raster.projection = projection;
+  raster.size = size;
+  offset_samples(raster.projection, size, offset_px);
+  return raster;
+}
+
 }  // namespace
 
 glm::dmat4 RasterView::clip_from_relative() const {
@@ -89,14 +101,11 @@ RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_
 }
 
 RasterView map_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
-  RasterView raster;
-  const glm::dmat4 eye_from_world = view.view_matrix();
-  raster.rotation = glm::dmat3(eye_from_world);
-  raster.origin_mm = -(glm::transpose(raster.rotation) * glm::dvec3(eye_from_world[3]));
-  raster.projection = view.projection_matrix();
-  raster.size = size;
-  offset_samples(raster.projection, size, offset_px);
-  return raster;
+  return view_by(view, view.projection_matrix(), size, offset_px);
+}
+
+RasterView zooming_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
+  return view_by(view, view.zooming_projection_matrix(), size, offset_px);
 }
 
 RasterView cube_face_view(const glm::dvec3& center_mm, int face, int size) {

@@ -45,6 +45,11 @@ struct RasterView {
 [[nodiscard]] RasterView map_view(const optics::VirtualView& view, glm::ivec2 size,
                                   glm::dvec2 offset_px = {0, 0});
 
+/// The zooming region of the same map, texel by texel (VirtualView::zooming_projection_matrix). Its depth is
+/// reversed once more: of two points, that of less depth is met first.
+[[nodiscard]] RasterView zooming_view(const optics::VirtualView& view, glm::ivec2 size,
+                                      glm::dvec2 offset_px = {0, 0});
+
 /// Face `face` (in OpenGL's order +x, -x, +y, -y, +z, -z) of a cube map around `center_mm`.
 [[nodiscard]] RasterView cube_face_view(const glm::dvec3& center_mm, int face, int size);
 
