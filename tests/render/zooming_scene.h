@@ -35,12 +35,13 @@ inline render::Scene before_concave_mirror(double eye_mm, int vertices_a_side = 
   return scene;
 }
 
-/// An equiconvex lens (R 200 mm, 4 mm, n 1.5, 60 x 60 mm) with its front at the origin towards +z, the eye on
+/// An equiconvex lens (R 200 mm, 4 mm, n 1.5, 12 x 12 mm: spherical aberration grows with the square of the
+/// height) with its front at the origin towards +z, the eye on
 /// its axis behind it.
 inline constexpr double kLensRadius_mm = 200, kLensThickness_mm = 4;
 inline render::Scene behind_plus_lens(double eye_mm, int vertices_a_side = 25) {
-  render::Scene scene = zooming_world(-eye_mm, 57);
-  scene.optics.push_back(lens_of(kLensRadius_mm, -kLensRadius_mm, kLensThickness_mm, 60, vertices_a_side));
+  render::Scene scene = zooming_world(-eye_mm, 10.8);
+  scene.optics.push_back(lens_of(kLensRadius_mm, -kLensRadius_mm, kLensThickness_mm, 12, vertices_a_side));
   return scene;
 }
 
