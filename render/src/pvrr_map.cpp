@@ -20,6 +20,12 @@ bool off_screen(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, g
          std::max({a.y, b.y, c.y}) < 0 || std::min({a.y, b.y, c.y}) > picture.y;
 }
 
+/// Depth half-way from the viewpoint back to the optic.
+float half_way(const optics::VirtualView& view) {
+  return static_cast<float>(
+      std::min(1.0, view.zooming_near_mm / (view.zooming_far_mm - view.zooming_near_mm)));
+}
+
 int texels(double wanted) {
   const int stepped = static_cast<int>(std::ceil(std::clamp(wanted, 1.0, double(kLargest)) / kStep)) * kStep;
   return std::clamp(stepped, kSmallest, kLargest);
@@ -64,14 +70,12 @@ void PvrrMap::set_empty(bool geometry) {
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
-void PvrrMap::draw_optic_depth(RasterScene& scene, const RasterView& view, const RasterOptic& surface,
-                               bool zooming) {
+void PvrrMap::bind_optic_depth() {
   if (!optic_depth_) {
     optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size_.texels.x, size_.texels.y, 1, false);
     optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
-  scene.draw_optic_depth(view, surface, zooming);
 }
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
@@ -84,9 +88,14 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   pass.except = optic;
   // A little farther than the surface is, so that rounding decides nothing.
   const auto clip = [&](const RasterView& by) {
-    draw_optic_depth(scene, by, surface, pass.zooming);
+    bind_optic_depth();
+    if (pass.zooming)
+      scene.draw_optic_depth_back(by, surface, half_way(view));
+    else
+      scene.draw_optic_depth(by, surface);
     pass.clip_depth = &optic_depth_;
-    const double farthest = surface.farthest_mm(by);
+    double farthest = surface.farthest_mm(by);
+    if (pass.zooming) farthest = std::max(farthest, -0.5 * view.zooming_far_mm);
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   };
   const auto add_overlay = [&](const RasterView& by) {

@@ -59,7 +59,7 @@ class PvrrMap {
   [[nodiscard]] const PvrrMapSize& size() const { return size_; }
 
  private:
-  void draw_optic_depth(RasterScene& scene, const RasterView& view, const RasterOptic& surface, bool zooming);
+  void bind_optic_depth();
 
   PvrrMapSize size_;
   std::unique_ptr<RasterTarget> target_;

@@ -326,17 +326,29 @@ void RasterScene::draw_sky(const RasterPass& pass) {
   glDepthFunc(GL_GREATER);
 }
 
-void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface, bool zooming) {
+void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface) {
+  begin_depth(view, surface, 1);
+  surface.draw_surface_with_skirt();
+  end_depth();
+}
+
+void RasterScene::draw_optic_depth_back(const RasterView& view, const RasterOptic& surface, float beside) {
+  begin_depth(view, surface, beside);
+  surface.draw_surface();
+  end_depth();
+}
+
+void RasterScene::begin_depth(const RasterView& view, const RasterOptic& surface, float none) const {
   begin_view(view, 0);
-  const float none = zooming ? 0 : 1;
   glClearBufferfv(GL_DEPTH, 0, &none);
-  glDepthFunc(zooming ? GL_GREATER : GL_LESS);
+  glDepthFunc(GL_LESS);
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
-  // (In the zooming region, where less depth is farther from the viewpoint, all is.)
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
   set_mesh_origin(view, surface);
-  surface.draw_surface_with_skirt();
+}
+
+void RasterScene::end_depth() {
   glDisable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
 }

@@ -68,9 +68,11 @@ class RasterScene {
 
   /// Draws only the depth of an optical surface and of its continuation beyond the border, the farthest where
   /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
-  /// alone. Of a zooming_view() it is the depth nearest to the viewpoint, 0 where there is none: in both the
-  /// surface that the light meets last.
-  void draw_optic_depth(const RasterView& view, const RasterOptic& surface, bool zooming = false);
+  /// alone.
+  void draw_optic_depth(const RasterView& view, const RasterOptic& surface);
+  /// The same in a zooming_view(), of the surface alone. Depth is `beside` (and at most that) where there is
+  /// none.
+  void draw_optic_depth_back(const RasterView& view, const RasterOptic& surface, float beside);
 
   /// Makes `view` that of the following draws; draw() does so itself.
   void begin_view(const RasterView& view, float level_bias) const;
@@ -109,6 +111,8 @@ class RasterScene {
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
   void draw_chunks(const RasterView& view, const RasterPass& pass, std::span<const Draw> draws);
+  void begin_depth(const RasterView& view, const RasterOptic& surface, float none) const;
+  static void end_depth();
   void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);
