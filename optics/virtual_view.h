@@ -49,10 +49,10 @@ struct VirtualView {
 
   /// Whether the map also shows a zooming region, between optic and viewpoint.
   [[nodiscard]] bool zooms() const { return zooming_far_mm > zooming_near_mm; }
-  /// The same for the zooming region: a point comes out at the map coordinates of the line through it and the
-  /// viewpoint, so that the picture is not reversed. w is its distance from the viewpoint back along
-  /// `direction`; depth is 1 at zooming_near_mm and 0 at zooming_far_mm, where the ray comes from: of two
-  /// points the one of *less* depth hides the other. Requires zooms().
+  /// The same two for the zooming region. A perspective from the viewpoint, mirrored in it: a point and its
+  /// mirror image, in the reversed region, come out at the same place. Depth is 1 at zooming_near_mm and 0 at
+  /// zooming_far_mm; the ray comes from there. Requires zooms().
+  [[nodiscard]] glm::dmat4 zooming_view_matrix() const;
   [[nodiscard]] glm::dmat4 zooming_projection_matrix() const;
 
   /// Homogeneous map coordinates (s w, t w, w) of a world point, or of a direction (a point at infinity). w <

@@ -299,14 +299,17 @@ glm::dmat4 VirtualView::projection_matrix() const {
   return m;
 }
 
-glm::dmat4 VirtualView::zooming_projection_matrix() const {
-  // A point and its mirror image in the viewpoint have the same place: clip coordinates with all signs
-  // turned, but for a depth of its own.
-  glm::dmat4 m = -projection_matrix();
-  const double depth = zooming_far_mm - zooming_near_mm;
-  m[2][2] = -zooming_near_mm / depth;
-  m[3][2] = zooming_near_mm * zooming_far_mm / depth;
+glm::dmat4 VirtualView::zooming_view_matrix() const {
+  glm::dmat4 m = -view_matrix();
+  m[3][3] = 1;
   return m;
+}
+
+glm::dmat4 VirtualView::zooming_projection_matrix() const {
+  VirtualView mirrored = *this;
+  mirrored.near_mm = zooming_near_mm;
+  mirrored.far_mm = zooming_far_mm;
+  return mirrored.projection_matrix();
 }
 
 glm::dvec3 VirtualView::project_point(const glm::dvec3& point_mm) const {

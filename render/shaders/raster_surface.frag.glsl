@@ -1,5 +1,5 @@
 // An opaque surface of the surroundings, or an optic seen by another one. Variants: TEXTURED, ALPHA_TEST,
-// CLIP_AGAINST_OPTIC, ZOOMING, GEOMETRY. Needs raster_view.glsl, raster_shading.glsl.
+// CLIP_AGAINST_OPTIC, GEOMETRY. Needs raster_view.glsl, raster_shading.glsl.
 
 in vec3 v_relative;
 in vec3 v_normal;
@@ -35,13 +35,7 @@ void main() {
 #endif
 #ifdef CLIP_AGAINST_OPTIC
   // Depth is reversed: what is nearer to the viewpoint than the optic's own surface lies behind the mirror.
-  float surface_depth = texelFetch(optic_depth, ivec2(gl_FragCoord.xy), 0).r;
-#ifdef ZOOMING
-  // Looking back towards the optic, what is farther than it lies behind the mirror.
-  if (gl_FragCoord.z < surface_depth) discard;
-#else
-  if (gl_FragCoord.z > surface_depth) discard;
-#endif
+  if (gl_FragCoord.z > texelFetch(optic_depth, ivec2(gl_FragCoord.xy), 0).r) discard;
 #endif
 #ifdef TEXTURED
 #ifdef ALPHA_TEST

@@ -70,10 +70,9 @@ void Overlay::set_lines(std::span<const OverlayLine> lines) {
   update_buffer(line_ends_, std::as_bytes(std::span(narrow)));
 }
 
-void Overlay::draw_in_scene(const RasterView& view, const GlTexture* clip_depth, bool zooming) {
+void Overlay::draw_in_scene(const RasterView& view, const GlTexture* clip_depth) {
   if (ball_count_ == 0 && line_vertices_ == 0) return;
-  glDepthFunc(zooming ? GL_LESS : GL_GREATER);
-  glUseProgram(program(clip_depth != nullptr, zooming).id());
+  glUseProgram(program(clip_depth != nullptr).id());
   if (clip_depth) glBindTextureUnit(kOpticDepthUnit, clip_depth->id());
   glUniform1f(kLift, 0);
   if (ball_count_ > 0) {
@@ -89,11 +88,10 @@ void Overlay::draw_in_scene(const RasterView& view, const GlTexture* clip_depth,
     glBindVertexArray(line_array_.id());
     glDrawArrays(GL_LINES, 0, line_vertices_);
   }
-  glDepthFunc(GL_GREATER);
 }
 
 void Overlay::draw_mesh(const RasterView& view, const RasterOptic& optic) {
-  glUseProgram(program(false, false).id());
+  glUseProgram(program(false).id());
   RasterScene::set_mesh_origin(view, optic);
   glUniform3f(kColor, 1, 1, 1);
   // A thousandth of the distance lifts the lines off the facets that they lie on.
@@ -107,15 +105,13 @@ void Overlay::draw_mesh(const RasterView& view, const RasterOptic& optic) {
   glDisable(GL_BLEND);
 }
 
-const GlProgram& Overlay::program(bool clip, bool zooming) {
-  const auto found = programs_.find({clip, zooming});
+const GlProgram& Overlay::program(bool clip) {
+  const auto found = programs_.find(clip);
   if (found != programs_.end()) return found->second;
-  std::vector<std::string> defines;
-  if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
-  if (zooming) defines.emplace_back("ZOOMING");
+  const std::vector<std::string> defines(clip ? 1 : 0, "CLIP_AGAINST_OPTIC");
   return programs_
-      .emplace(std::pair(clip, zooming), make_program({"raster_view.glsl", "overlay_line.vert.glsl"},
-                                                      {"overlay_line.frag.glsl"}, defines))
+      .emplace(clip, make_program({"raster_view.glsl", "overlay_line.vert.glsl"}, {"overlay_line.frag.glsl"},
+                                  defines))
       .first->second;
 }
 

@@ -5,7 +5,6 @@
 #include <glm/vec3.hpp>
 #include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "render/src/gl_objects.h"
@@ -30,21 +29,20 @@ class Overlay {
   void set_balls(std::span<const OverlayBall> balls);
   void set_lines(std::span<const OverlayLine> lines);
 
-  /// Draws into the bound target after RasterScene::draw, or draw_zooming where `zooming`, with the same view
-  /// and `clip_depth`.
-  void draw_in_scene(const RasterView& view, const GlTexture* clip_depth, bool zooming = false);
+  /// Draws into the bound target after RasterScene::draw with the same view and `clip_depth`.
+  void draw_in_scene(const RasterView& view, const GlTexture* clip_depth);
   /// The mesh of an optic as white lines, to be drawn after the optic itself.
   void draw_mesh(const RasterView& view, const RasterOptic& optic);
 
  private:
-  const GlProgram& program(bool clip, bool zooming);
+  const GlProgram& program(bool clip);
 
   glm::dvec3 origin_mm_{0};  ///< balls are relative to it
   GlBuffer sphere_, balls_, line_ends_;
   GlVertexArray ball_array_, line_array_;
   glm::dvec3 line_origin_mm_{0};
   GLsizei sphere_vertices_ = 0, ball_count_ = 0, line_vertices_ = 0;
-  std::map<std::pair<bool, bool>, GlProgram> programs_;
+  std::map<bool, GlProgram> programs_;
 };
 
 }  // namespace catoptra::render

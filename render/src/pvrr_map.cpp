@@ -20,12 +20,6 @@ bool off_screen(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, g
          std::max({a.y, b.y, c.y}) < 0 || std::min({a.y, b.y, c.y}) > picture.y;
 }
 
-/// Depth half-way from the viewpoint back to the optic.
-float half_way(const optics::VirtualView& view) {
-  return static_cast<float>(
-      std::min(1.0, view.zooming_near_mm / (view.zooming_far_mm - view.zooming_near_mm)));
-}
-
 int texels(double wanted) {
   const int stepped = static_cast<int>(std::ceil(std::clamp(wanted, 1.0, double(kLargest)) / kStep)) * kStep;
   return std::clamp(stepped, kSmallest, kLargest);
@@ -58,9 +52,12 @@ PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh, std::span<const
 }
 
 void PvrrMap::resize(const PvrrMapSize& size, bool geometry) {
-  if (size.texels != size_.texels) optic_depth_ = GlTexture();
   size_ = size;
   RasterTarget::fit(target_, size.texels, geometry);
+  if (optic_depth_ && view_.size == size.texels) return;
+  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size.texels.x, size.texels.y, 1, false);
+  optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
+  view_.size = size.texels;
 }
 
 void PvrrMap::set_empty(bool geometry) {
@@ -70,53 +67,51 @@ void PvrrMap::set_empty(bool geometry) {
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
-void PvrrMap::bind_optic_depth() {
-  if (!optic_depth_) {
-    optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size_.texels.x, size_.texels.y, 1, false);
-    optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
-  }
+void PvrrMap::bind_optic_depth() const {
   glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
 }
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
                    const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+  view_ = map_view(view, size_.texels, offset_px);
   RasterPass pass;
   pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
   pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
   pass.draw_optics = true;
   pass.except = optic;
-  // A little farther than the surface is, so that rounding decides nothing.
-  const auto clip = [&](const RasterView& by) {
+  if (!view.beyond_viewpoint) {
     bind_optic_depth();
-    if (pass.zooming)
-      scene.draw_optic_depth_back(by, surface, half_way(view));
-    else
-      scene.draw_optic_depth(by, surface);
+    scene.draw_optic_depth(view_, surface);
     pass.clip_depth = &optic_depth_;
-    double farthest = surface.farthest_mm(by);
-    if (pass.zooming) farthest = std::max(farthest, -0.5 * view.zooming_far_mm);
+    // A little farther than the surface is, so that rounding decides nothing.
+    const double farthest = surface.farthest_mm(view_);
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
-  };
-  const auto add_overlay = [&](const RasterView& by) {
-    if (!overlay) return;
+  }
+  target_->bind(geometry);
+  scene.draw(view_, pass);
+  if (overlay) {
     target_->bind(false);
-    overlay->draw_in_scene(by, pass.clip_depth, pass.zooming);
-  };
-  const RasterView beyond = map_view(view, size_.texels, offset_px);
-  if (!view.beyond_viewpoint) clip(beyond);
-  target_->bind(geometry);
-  scene.draw(beyond, pass);
-  add_overlay(beyond);
-  if (!view.zooms()) return;
+    overlay->draw_in_scene(view_, pass.clip_depth);
+  }
+  zooming_.reset();
+  if (view.zooms()) draw_zooming(scene, surface, view, offset_px, pass, overlay);
+}
 
-  const RasterView before = zooming_view(view, size_.texels, offset_px);
-  pass.zooming = true;
-  if (!scene.sees_anything(before, pass)) return;
-  clip(before);
-  target_->bind(geometry);
-  scene.draw_zooming(before, pass);
-  add_overlay(before);
+void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const optics::VirtualView& view,
+                           glm::dvec2 offset_px, RasterPass pass, Overlay* overlay) {
+  const RasterView back = zooming_view(view, size_.texels, offset_px);
+  if (!scene.sees_anything(back, pass)) return;
+  zooming_ = back;
+  bind_optic_depth();
+  scene.draw_zooming_optic_depth(back, surface, 0.5 * view.zooming_far_mm);
+  pass.clip_depth = &optic_depth_;
+  pass.clip_reach_mm = optics::kInfinity;
+  target_->bind(pass.geometry);
+  scene.draw_bodies(back, pass);
+  if (!overlay) return;
+  target_->bind(false);
+  overlay->draw_in_scene(back, pass.clip_depth);
 }
 
 }  // namespace catoptra::render

@@ -300,6 +300,10 @@ OpticStats PvrrPatch::statistics() const {
   return stats;
 }
 
+optics::ViewRegions PvrrPatch::regions() const {
+  return faces_eye_ ? optics::view_regions(hits(), view_) : optics::ViewRegions();
+}
+
 std::optional<std::string> PvrrPatch::warning() const {
   if (!faces_eye_ || !refined_surface_ || !(refinement_.error_left_px() > 0)) return std::nullopt;
   std::array<char, 16> error{};

@@ -179,6 +179,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
 
   glClipControl(view.bottom_row_first ? GL_LOWER_LEFT : GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glViewport(0, 0, view.size.x, view.size.y);
+  glDepthRange(view.depth_of_far, view.depth_of_near);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
@@ -227,11 +228,20 @@ void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
 }
 
 void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
-  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
-  draw_chunks(view, pass, draws_of(view, pass));
-  if (pass.draw_optics) draw_optics(view, pass);
+  draw_bodies_in_view(view, pass);
   // A sky of one colour without geometry is the cleared background itself.
   if (sky_ || pass.geometry) draw_sky(pass);
+}
+
+void RasterScene::draw_bodies(const RasterView& view, const RasterPass& pass) {
+  begin_view(view, pass.level_bias);
+  draw_bodies_in_view(view, pass);
+}
+
+void RasterScene::draw_bodies_in_view(const RasterView& view, const RasterPass& pass) {
+  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
+  draw_surroundings(view, pass);
+  if (pass.draw_optics) draw_optics(view, pass);
 }
 
 bool RasterScene::sees_anything(const RasterView& view, const RasterPass& pass) const {
@@ -241,24 +251,12 @@ bool RasterScene::sees_anything(const RasterView& view, const RasterPass& pass) 
                      [&](const Chunk& chunk) { return box_in_view(view, chunk.triangles.box).seen; });
 }
 
-void RasterScene::draw_zooming(const RasterView& view, const RasterPass& pass) {
-  begin_view(view, pass.level_bias);
-  const float farthest = 1;
-  glClearBufferfv(GL_DEPTH, 0, &farthest);
-  glDepthFunc(GL_LESS);
-  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
-  draw_chunks(view, pass, draws_of(view, pass));
-  if (pass.draw_optics) draw_optics(view, pass);
-  glDepthFunc(GL_GREATER);
-}
-
 std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, const RasterPass& pass) const {
   std::vector<Draw> draws;
   for (std::size_t i = 0; i < chunks_.size(); ++i) {
     const BoxInView box = box_in_view(view, chunks_[i].triangles.box);
     if (!box.seen) continue;
-    // Of a box around the viewpoint box_in_view() does not tell how far it reaches back.
-    Draw draw{i, box.nearest_mm, pass.clip_depth && (pass.zooming || box.nearest_mm <= pass.clip_reach_mm)};
+    Draw draw{i, box.nearest_mm, pass.clip_depth && box.nearest_mm <= pass.clip_reach_mm};
     const TriangleChunk& chunk = chunks_[i].triangles;
     // Few triangles in a large box, as of walls along a street, are seldom near where their box is.
     if (draw.clip && chunk.count <= 3 * kFewTriangles) {
@@ -270,9 +268,10 @@ std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, con
   }
   // From front to back, so that what is hidden is not shaded; alpha-tested surfaces last, since they cost
   // more and hide less. Where chunks are equally near their order in the file decides.
+  const double sense = view.depth_of_near > view.depth_of_far ? 1 : -1;
   std::stable_sort(draws.begin(), draws.end(), [&](const Draw& a, const Draw& b) {
-    return std::tuple(batches_[chunks_[a.chunk].batch].alpha_test, a.nearest_mm) <
-           std::tuple(batches_[chunks_[b.chunk].batch].alpha_test, b.nearest_mm);
+    return std::tuple(batches_[chunks_[a.chunk].batch].alpha_test, sense * a.nearest_mm) <
+           std::tuple(batches_[chunks_[b.chunk].batch].alpha_test, sense * b.nearest_mm);
   });
   return draws;
 }
@@ -287,14 +286,15 @@ void RasterScene::set_material(const Batch& batch) const {
   if (batch.alpha_test) glUniform2f(kAlpha, batch.alpha, batch.cutoff);
 }
 
-void RasterScene::draw_chunks(const RasterView& view, const RasterPass& pass, std::span<const Draw> draws) {
+void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pass) {
   glBindVertexArray(surroundings_.id());
   GLuint program = 0;
   const Batch* material = nullptr;
-  for (const Draw& draw : draws) {
+  for (const Draw& draw : draws_of(view, pass)) {
     const Chunk& chunk = chunks_[draw.chunk];
     const Batch& batch = batches_[chunk.batch];
-    const GLuint wanted = surface_program(batch.texture >= 0, batch.alpha_test, pass, draw.clip).id();
+    const GLuint wanted =
+        surface_program(batch.texture >= 0, batch.alpha_test, draw.clip, pass.geometry).id();
     if (wanted != program) {
       glUseProgram(program = wanted);
       set_mesh_origin(view, glm::dvec3(0));
@@ -308,7 +308,7 @@ void RasterScene::draw_chunks(const RasterView& view, const RasterPass& pass, st
 }
 
 void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
-  glUseProgram(surface_program(false, false, pass, pass.clip_depth != nullptr).id());
+  glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
     set_mesh_origin(view, optics_[i]);
@@ -327,44 +327,44 @@ void RasterScene::draw_sky(const RasterPass& pass) {
 }
 
 void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface) {
-  begin_depth(view, surface, 1);
-  surface.draw_surface_with_skirt();
-  end_depth();
+  draw_depth(view, surface, 1, GL_LESS, true);
 }
 
-void RasterScene::draw_optic_depth_back(const RasterView& view, const RasterOptic& surface, float beside) {
-  begin_depth(view, surface, beside);
-  surface.draw_surface();
-  end_depth();
+void RasterScene::draw_zooming_optic_depth(const RasterView& view, const RasterOptic& surface,
+                                           double beside_mm) {
+  const glm::dvec4 clip = view.projection * glm::dvec4(0, 0, -beside_mm, 1);
+  const double depth = std::clamp(clip.z / clip.w, 0.0, 1.0);
+  draw_depth(view, surface, float(view.depth_of_far + (view.depth_of_near - view.depth_of_far) * depth),
+             GL_GREATER, false);
 }
 
-void RasterScene::begin_depth(const RasterView& view, const RasterOptic& surface, float none) const {
+void RasterScene::draw_depth(const RasterView& view, const RasterOptic& surface, float none, GLenum keep,
+                             bool skirt) {
   begin_view(view, 0);
   glClearBufferfv(GL_DEPTH, 0, &none);
-  glDepthFunc(GL_LESS);
+  glDepthFunc(keep);
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
   set_mesh_origin(view, surface);
-}
-
-void RasterScene::end_depth() {
+  if (skirt)
+    surface.draw_surface_with_skirt();
+  else
+    surface.draw_surface();
   glDisable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
 }
 
-const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, const RasterPass& pass,
-                                              bool clip) {
-  const unsigned key = unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 |
-                       unsigned(pass.geometry) << 3 | unsigned(pass.zooming) << 4;
+const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bool clip, bool geometry) {
+  const unsigned key =
+      unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
   std::vector<std::string> defines = shading_defines();
   if (textured) defines.emplace_back("TEXTURED");
   if (alpha_test) defines.emplace_back("ALPHA_TEST");
   if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
-  if (pass.zooming) defines.emplace_back("ZOOMING");
-  if (pass.geometry) defines.emplace_back("GEOMETRY");
+  if (geometry) defines.emplace_back("GEOMETRY");
   return surface_programs_
       .emplace(key,
                make_program({"raster_view.glsl", "raster_surface.vert.glsl"},

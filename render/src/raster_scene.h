@@ -28,9 +28,8 @@ struct RasterPass {
   float level_bias = 0;   ///< added to the textures' level of detail (maps: see PvrrMap)
   const GlTexture* clip_depth = nullptr;  ///< depth of the optic in this view: what is nearer is not drawn
   double clip_reach_mm = 0;               ///< that depth is nowhere beyond this distance along the view
-  bool zooming = false;      ///< the view is a zooming_view(): less depth hides more, also of the optic
-  bool draw_optics = false;  ///< the mirrors as diffuse bodies of their reflectance ...
-  std::optional<std::size_t> except;  ///< ... but not this one
+  bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
+  std::optional<std::size_t> except;      ///< ... but not this one
 };
 
 /// Everything static is uploaded once, positions in the meshes' own coordinates. Needs a current context
@@ -57,22 +56,21 @@ class RasterScene {
 
   /// Clears the bound target and draws surroundings, optics as asked, and the sky.
   void draw(const RasterView& view, const RasterPass& pass);
-  /// The same in two steps. What is drawn between them hides what is behind it before that costs anything.
+  /// Whether any of the surroundings, or other optics as `pass` asks for them, may be seen.
+  [[nodiscard]] bool sees_anything(const RasterView& view, const RasterPass& pass) const;
+  /// Surroundings and optics as asked, without sky, where they hide what is in the bound target.
+  void draw_bodies(const RasterView& view, const RasterPass& pass);
+  /// draw() in two steps. What is drawn between them hides what is behind it before that costs anything.
   void clear(const RasterView& view, const RasterPass& pass);
   void draw_all(const RasterView& view, const RasterPass& pass);
-  /// Whether any chunk of the surroundings, or of `pass` an optic, may lie in the view.
-  [[nodiscard]] bool sees_anything(const RasterView& view, const RasterPass& pass) const;
-  /// Draws surroundings and optics of a zooming_view() over what is in the bound target, which lies behind
-  /// them; clears its depth.
-  void draw_zooming(const RasterView& view, const RasterPass& pass);
 
   /// Draws only the depth of an optical surface and of its continuation beyond the border, the farthest where
   /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
   /// alone.
   void draw_optic_depth(const RasterView& view, const RasterOptic& surface);
-  /// The same in a zooming_view(), of the surface alone. Depth is `beside` (and at most that) where there is
-  /// none.
-  void draw_optic_depth_back(const RasterView& view, const RasterOptic& surface, float beside);
+  /// In a zooming_view(): the surface alone, and where there is none the depth of `beside_mm` from the
+  /// viewpoint, which is also the least.
+  void draw_zooming_optic_depth(const RasterView& view, const RasterOptic& surface, double beside_mm);
 
   /// Makes `view` that of the following draws; draw() does so itself.
   void begin_view(const RasterView& view, float level_bias) const;
@@ -110,14 +108,14 @@ class RasterScene {
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
-  void draw_chunks(const RasterView& view, const RasterPass& pass, std::span<const Draw> draws);
-  void begin_depth(const RasterView& view, const RasterOptic& surface, float none) const;
-  static void end_depth();
+  void draw_bodies_in_view(const RasterView& view, const RasterPass& pass);
+  void draw_surroundings(const RasterView& view, const RasterPass& pass);
+  void draw_depth(const RasterView& view, const RasterOptic& surface, float none, GLenum keep, bool skirt);
   void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);
   /// Compiled on first use, for each combination of the shader's variants.
-  const GlProgram& surface_program(bool textured, bool alpha_test, const RasterPass& pass, bool clip);
+  const GlProgram& surface_program(bool textured, bool alpha_test, bool clip, bool geometry);
   const GlProgram& sky_program(bool geometry);
 
   const Scene& scene_;

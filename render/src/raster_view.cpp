@@ -33,10 +33,9 @@ void offset_samples(glm::dmat4& projection, glm::ivec2 size, glm::dvec2 offset_p
   }
 }
 
-RasterView view_by(const optics::VirtualView& view, const glm::dmat4& projection, glm::ivec2 size,
+RasterView view_by(const glm::dmat4& eye_from_world, const glm::dmat4& projection, glm::ivec2 size,
                    glm::dvec2 offset_px) {
   RasterView raster;
-  const glm::dmat4 eye_from_world = view.view_matrix();
   raster.rotation = glm::dmat3(eye_from_world);
   raster.origin_mm = -(glm::transpose(raster.rotation) * glm::dvec3(eye_from_world[3]));
   raster.projection = projection;
@@ -101,11 +100,16 @@ RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_
 }
 
 RasterView map_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
-  return view_by(view, view.projection_matrix(), size, offset_px);
+  RasterView raster = view_by(view.view_matrix(), view.projection_matrix(), size, offset_px);
+  if (view.zooms()) raster.depth_of_near = 0.5f;
+  return raster;
 }
 
 RasterView zooming_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
-  return view_by(view, view.zooming_projection_matrix(), size, offset_px);
+  RasterView raster = view_by(view.zooming_view_matrix(), view.zooming_projection_matrix(), size, offset_px);
+  raster.depth_of_near = 0.5f;
+  raster.depth_of_far = 1;
+  return raster;
 }
 
 RasterView cube_face_view(const glm::dvec3& center_mm, int face, int size) {
