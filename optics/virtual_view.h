@@ -36,7 +36,10 @@ struct VirtualView {
   double residual_mm = 0;
   glm::dvec2 fov_rad{0};  ///< horizontal, vertical; 0 for a parallel projection
   bool beyond_viewpoint =
-      false;  ///< rays converge in front of the optic: the map shows the reversed region (Fig. 8)
+      false;  ///< rays converge in front of the optic: the map shows the reversed region (Fig. 8) ...
+  double zooming_near_mm = 0,
+         zooming_far_mm = 0;  ///< ... and what lies so far from the viewpoint back towards the optic: the
+                              ///< zooming region. 0: there is none
   bool fov_clamped =
       false;  ///< some rays leave the widest volume a projection can have: they are not in the map
 
@@ -44,7 +47,16 @@ struct VirtualView {
   [[nodiscard]] glm::dmat4 view_matrix() const;
   [[nodiscard]] glm::dmat4 projection_matrix() const;
 
-  /// Homogeneous map coordinates (s w, t w, w) of a world point, or of a direction (a point at infinity).
+  /// Whether the map also shows a zooming region, between optic and viewpoint.
+  [[nodiscard]] bool zooms() const { return zooming_far_mm > zooming_near_mm; }
+  /// The same two for the zooming region. A perspective from the viewpoint, mirrored in it: a point and its
+  /// mirror image, in the reversed region, come out at the same place. Depth is 1 at zooming_near_mm and 0 at
+  /// zooming_far_mm; the ray comes from there. Requires zooms().
+  [[nodiscard]] glm::dmat4 zooming_view_matrix() const;
+  [[nodiscard]] glm::dmat4 zooming_projection_matrix() const;
+
+  /// Homogeneous map coordinates (s w, t w, w) of a world point, or of a direction (a point at infinity). w <
+  /// 0 for points before the viewpoint, as those of the zooming region are; (s, t) holds for them too.
   [[nodiscard]] glm::dvec3 project_point(const glm::dvec3& point_mm) const;
   [[nodiscard]] glm::dvec3 project_direction(const glm::dvec3& direction) const;
 
@@ -56,7 +68,9 @@ struct VirtualView {
 /// plane. The near plane lies in front of all that may be seen, not behind the mirror: what is behind the
 /// mirror's surface is cut by comparing with the optic's own depth (design 2.3), which the renderer does per
 /// fragment. The volume holds every ray segment from the optic on, with a border of `margin` of its width on
-/// each side. Throws catoptra::Error where no vertex faces the eye.
+/// each side; where rays converge before the optic (beyond_viewpoint) all but the piece around the viewpoint
+/// between the near planes of zooming and reversed region, where no perspective from there says anything.
+/// Throws catoptra::Error where no vertex faces the eye.
 [[nodiscard]] VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hits,
                                             const cad_import::BoundingBox& scene_bounds,
                                             double margin = 0.01);

@@ -25,9 +25,11 @@ glm::dvec3 forward_projection(glm::dvec3 towards, const VirtualView& view) {
 glm::dvec3 project(const glm::dvec3& point_mm, const VertexHit& hit, const VirtualView& view) {
   if (view.projection == MapProjection::parallel) return view.project_point(point_mm);
   const glm::dvec3 towards = point_mm - view.viewpoint_mm;
-  // What lies before the viewpoint is in the zooming region, which this map does not show: the direction has
-  // to do.
-  if (!(glm::dot(towards, view.direction) > 0)) return forward_projection(hit.direction, view);
+  const double depth = glm::dot(towards, view.direction);
+  if (view.zooms() && depth < -view.zooming_near_mm)
+    return forward_projection(-glm::normalize(towards), view);
+  // What lies elsewhere before the viewpoint is not in the map: the direction has to do.
+  if (!(depth > 0)) return forward_projection(hit.direction, view);
   return forward_projection(glm::normalize(towards), view);
 }
 
@@ -134,10 +136,15 @@ double usual_distance(const MapProblem& problem) {
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   if (problem.view.projection == MapProjection::parallel) return std::min(*middle, problem.view.far_mm);
+  // All on one side of the viewpoint, or else infinitely far.
+  double side = 0;
   for (const std::size_t i : problem.facing) {
     const glm::dvec3 p = problem.hits[i].surface_point_mm + *middle * problem.hits[i].direction;
     const glm::dvec3 towards = p - problem.view.viewpoint_mm;
-    if (!(glm::dot(towards, problem.view.direction) > kGrazing * glm::length(towards))) return kInfinity;
+    const double depth = glm::dot(towards, problem.view.direction);
+    if (side == 0) side = depth < 0 && problem.view.zooms() ? -1 : 1;
+    if (!(side * depth > kGrazing * glm::length(towards))) return kInfinity;
+    if (side < 0 && !(-depth > problem.view.zooming_near_mm)) return kInfinity;
   }
   return *middle;
 }

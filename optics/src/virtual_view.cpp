@@ -155,26 +155,34 @@ void make_parallel(VirtualView& view, const Bundle& bundle, const cad_import::Bo
   set_sides(view, sides, margin);
 }
 
-// Where the map of converging rays starts. Every line passes the viewpoint at some distance, and just beyond
-// it those distances fill the whole view; farther on they hardly widen it, but what stands nearer is lost.
-// So: as near as the nearest thing that a vertex sees asks for, but no farther than where the misses widen
-// the map by half.
-double near_beyond_viewpoint(const VirtualView& view, const Bundle& bundle, std::span<const VertexHit> hits) {
-  double miss = 0, slope = 0, nearest_hit = kInfinity;
+// Where the regions on both sides of the point at which rays converge start. Every line passes the viewpoint
+// at some distance, and just beyond and before it those distances fill the whole view; farther off they
+// hardly widen it, but what stands nearer is lost. So: as near as the nearest thing that a vertex sees asks
+// for, but no farther than where the misses widen the map by half.
+void set_near_planes(VirtualView& view, const Bundle& bundle, std::span<const VertexHit> hits) {
+  double miss = 0, slope = 0, nearest_beyond = kInfinity, nearest_before = kInfinity, farthest_before = 0;
   for (std::size_t i = 0; i < bundle.points.size(); ++i) {
     const glm::dvec3& d = bundle.directions[i];
+    const glm::dvec3 start = bundle.points[i] - view.viewpoint_mm;
     const double along = glm::dot(d, view.direction);
-    miss = std::max(miss, glm::length(glm::cross(bundle.points[i] - view.viewpoint_mm, d)));
+    miss = std::max(miss, glm::length(glm::cross(start, d)));
     if (along > 0) slope = std::max(slope, glm::length(d - along * view.direction) / along);
+    farthest_before = std::max(farthest_before, -glm::dot(start, view.direction));
     const VertexHit& hit = hits[bundle.hits[i]];
+    if (!hit.scene_hit) continue;
     const double depth = glm::dot(hit.hit_point_mm - view.viewpoint_mm, view.direction);
-    if (hit.scene_hit && depth > 0) nearest_hit = std::min(nearest_hit, depth);
+    (depth > 0 ? nearest_beyond : nearest_before) =
+        std::min(depth > 0 ? nearest_beyond : nearest_before, std::abs(depth));
   }
   const double wider = miss / std::max(0.25 * slope, 1e-9);
-  return std::max({1.0, miss, std::min(wider, 0.5 * nearest_hit)});
+  view.near_mm = std::max({1.0, miss, std::min(wider, 0.5 * nearest_beyond)});
+  view.zooming_near_mm = std::max({1.0, miss, std::min(wider, 0.5 * nearest_before)});
+  // A little farther than the optic, whose facets may sag.
+  view.zooming_far_mm = 1.01 * farthest_before + 1;
 }
 
-// Holds the part of each ray beyond the near plane: a segment projects to the segment between its ends.
+// Holds the part of each ray beyond the near plane, and that in the zooming region: a segment projects to the
+// segment between its ends.
 void set_perspective_sides(VirtualView& view, const Bundle& bundle, double margin) {
   const double widest = std::tan(0.5 * kWidestFov);
   Sides sides;
@@ -201,6 +209,9 @@ void set_perspective_sides(VirtualView& view, const Bundle& bundle, double margi
       hold(start);
     else if (along > 0)
       hold(start + (view.near_mm - depth) / along * d);
+    if (!view.zooms() || depth > -view.zooming_near_mm || !(along > 0)) continue;
+    hold(-start);  // seen from the viewpoint in the opposite direction
+    hold(-(start + (-view.zooming_near_mm - depth) / along * d));
   }
   set_sides(view, sides, margin);
   view.fov_rad = {std::atan(view.right_side) - std::atan(view.left),
@@ -237,7 +248,7 @@ VirtualView view_of_mesh(const Optic& optic, const tessellate::OpticArrays& mesh
   // beyond it.
   view.beyond_viewpoint = distance_along_rays < 0;
   if (view.beyond_viewpoint)
-    view.near_mm = near_beyond_viewpoint(view, bundle, hits);
+    set_near_planes(view, bundle, hits);
   else  // nothing that a ray meets is nearer than the nearest point of the optic; facets may sag by a little
     view.near_mm = std::max({0.99 * nearest, 1e-3 * farthest, 1e-3});
   set_far(view, scene_bounds);
@@ -286,6 +297,19 @@ glm::dmat4 VirtualView::projection_matrix() const {
     m[3][3] = 1;
   }
   return m;
+}
+
+glm::dmat4 VirtualView::zooming_view_matrix() const {
+  glm::dmat4 m = -view_matrix();
+  m[3][3] = 1;
+  return m;
+}
+
+glm::dmat4 VirtualView::zooming_projection_matrix() const {
+  VirtualView mirrored = *this;
+  mirrored.near_mm = zooming_near_mm;
+  mirrored.far_mm = zooming_far_mm;
+  return mirrored.projection_matrix();
 }
 
 glm::dvec3 VirtualView::project_point(const glm::dvec3& point_mm) const {

@@ -149,7 +149,9 @@ void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view
     if (!hit.faces_eye || passes(hit)) continue;
     const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
     constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
-    hit.faces_eye = glm::dot(shown, view.direction) > kGrazing * glm::length(shown);
+    const double depth = glm::dot(shown, view.direction), least = kGrazing * glm::length(shown);
+    const bool zoomed = hit.scene_hit && view.zooms() && -depth > std::max(least, view.zooming_near_mm);
+    hit.faces_eye = depth > least || zoomed;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "render/src/lens_rays.h"
 #include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
+#include "render/src/view_warnings.h"
 
 namespace catoptra::render {
 namespace {
@@ -94,6 +95,9 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.warnings = map_warnings();
   for (const PvrrPatch& patch : patches_)
     if (auto warning = patch.warning()) result.warnings.push_back(std::move(*warning));
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    if (auto warning = region_warning(scene_.optics[i].name, patches_[i].regions()))
+      result.warnings.push_back(std::move(*warning));
   return result;
 }
 

@@ -67,26 +67,51 @@ void PvrrMap::set_empty(bool geometry) {
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
+void PvrrMap::bind_optic_depth() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
+}
+
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry) {
+                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   view_ = map_view(view, size_.texels, offset_px);
-  clipped_ = !view.beyond_viewpoint;
-  if (clipped_) {
-    glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
-    scene.draw_optic_depth(view_, surface);
-  }
   RasterPass pass;
   pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
   pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
-  pass.clip_depth = clip_depth();
-  // A little farther than the surface is, so that rounding decides nothing.
-  const double farthest = clipped_ ? surface.farthest_mm(view_) : 0;
-  pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   pass.draw_optics = true;
   pass.except = optic;
+  if (!view.beyond_viewpoint) {
+    bind_optic_depth();
+    scene.draw_optic_depth(view_, surface);
+    pass.clip_depth = &optic_depth_;
+    // A little farther than the surface is, so that rounding decides nothing.
+    const double farthest = surface.farthest_mm(view_);
+    pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
+  }
   target_->bind(geometry);
   scene.draw(view_, pass);
+  if (overlay) {
+    target_->bind(false);
+    overlay->draw_in_scene(view_, pass.clip_depth);
+  }
+  zooming_.reset();
+  if (view.zooms()) draw_zooming(scene, surface, view, offset_px, pass, overlay);
+}
+
+void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const optics::VirtualView& view,
+                           glm::dvec2 offset_px, RasterPass pass, Overlay* overlay) {
+  const RasterView back = zooming_view(view, size_.texels, offset_px);
+  if (!scene.sees_anything(back, pass)) return;
+  zooming_ = back;
+  bind_optic_depth();
+  scene.draw_zooming_optic_depth(back, surface, 0.5 * view.zooming_far_mm);
+  pass.clip_depth = &optic_depth_;
+  pass.clip_reach_mm = optics::kInfinity;
+  target_->bind(pass.geometry);
+  scene.draw_bodies(back, pass);
+  if (!overlay) return;
+  target_->bind(false);
+  overlay->draw_in_scene(back, pass.clip_depth);
 }
 
 }  // namespace catoptra::render

@@ -3,9 +3,11 @@
 
 #include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "optics/virtual_view.h"
+#include "render/src/overlay_vertices.h"
 #include "render/src/raster_scene.h"
 #include "render/src/raster_target.h"
 
@@ -44,28 +46,37 @@ class PvrrMap {
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
 
-  /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies.
+  /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies, and
+  /// an `overlay` (or null).
   /// What lies between viewpoint and `surface`, the last that the light meets (that is, behind the mirror, or
-  /// on this side of the lens), is cut per fragment by its depth, unless the rays converge in front of it.
+  /// on this side of the lens), is cut per fragment by its depth.
+  /// Where the rays converge in front of the optic the zooming region is drawn over the reversed one: light
+  /// meets it first (design 2.10), and both have the same map coordinates. What lies behind the optic is cut
+  /// by its depth, and beside the optic what is farther than half-way to it: rays that leave near its border
+  /// can only be out there once they are near their crossing, and the optic's own frame is not to be seen.
   /// `offset_px`: place of the samples within a texel.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry);
+            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
-  /// The view of the last draw(), with its depth of the optic (null where nothing is cut) for what is drawn
-  /// on top.
+  /// The views of the last draw(). Depths of both are in the target, see zooming_view(); the zooming region's
+  /// is there where anything may be seen in it.
   [[nodiscard]] const RasterView& view() const { return view_; }
-  [[nodiscard]] const GlTexture* clip_depth() const { return clipped_ ? &optic_depth_ : nullptr; }
+  [[nodiscard]] const std::optional<RasterView>& zooming() const { return zooming_; }
 
   [[nodiscard]] const RasterTarget& target() const { return *target_; }
   [[nodiscard]] const PvrrMapSize& size() const { return size_; }
 
  private:
+  void bind_optic_depth() const;
+  void draw_zooming(RasterScene& scene, const RasterOptic& surface, const optics::VirtualView& view,
+                    glm::dvec2 offset_px, RasterPass pass, Overlay* overlay);
+
   PvrrMapSize size_;
   std::unique_ptr<RasterTarget> target_;
   GlTexture optic_depth_;
   GlFramebuffer optic_depth_framebuffer_;
   RasterView view_;
-  bool clipped_ = false;
+  std::optional<RasterView> zooming_;
 };
 
 }  // namespace catoptra::render

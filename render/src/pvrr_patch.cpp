@@ -243,12 +243,11 @@ void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) 
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
-  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry);
-  drawn_ = {offset, geometry};
-  if (!overlay) return;
-  map_.target().bind(false);
-  overlay->draw_in_scene(map_.view(), map_.clip_depth());
-  drawn_.reset();
+  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry, overlay);
+  if (overlay)
+    drawn_.reset();
+  else
+    drawn_ = {offset, geometry};
 }
 
 void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
@@ -299,6 +298,10 @@ OpticStats PvrrPatch::statistics() const {
     stats.patches.push_back(
         {placement_.point(view_.viewpoint_mm), view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
   return stats;
+}
+
+optics::ViewRegions PvrrPatch::regions() const {
+  return faces_eye_ ? optics::view_regions(hits(), view_) : optics::ViewRegions();
 }
 
 std::optional<std::string> PvrrPatch::warning() const {

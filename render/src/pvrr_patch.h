@@ -10,6 +10,7 @@
 
 #include "optics/lens_path.h"
 #include "optics/vertex_hits.h"
+#include "optics/view_regions.h"
 #include "optics/virtual_view.h"
 #include "render/frame.h"
 #include "render/src/lens_rays.h"
@@ -60,6 +61,8 @@ class PvrrPatch {
   [[nodiscard]] OpticStats statistics() const;
   /// Where the last refinement ended at its limit.
   [[nodiscard]] std::optional<std::string> warning() const;
+  /// What the vertices see that the one viewpoint cannot show, or shows roughly.
+  [[nodiscard]] optics::ViewRegions regions() const;
 
  private:
   [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;

@@ -179,6 +179,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
 
   glClipControl(view.bottom_row_first ? GL_LOWER_LEFT : GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glViewport(0, 0, view.size.x, view.size.y);
+  glDepthRange(view.depth_of_far, view.depth_of_near);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
@@ -227,11 +228,27 @@ void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
 }
 
 void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
+  draw_bodies_in_view(view, pass);
+  // A sky of one colour without geometry is the cleared background itself.
+  if (sky_ || pass.geometry) draw_sky(pass);
+}
+
+void RasterScene::draw_bodies(const RasterView& view, const RasterPass& pass) {
+  begin_view(view, pass.level_bias);
+  draw_bodies_in_view(view, pass);
+}
+
+void RasterScene::draw_bodies_in_view(const RasterView& view, const RasterPass& pass) {
   if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   draw_surroundings(view, pass);
   if (pass.draw_optics) draw_optics(view, pass);
-  // A sky of one colour without geometry is the cleared background itself.
-  if (sky_ || pass.geometry) draw_sky(pass);
+}
+
+bool RasterScene::sees_anything(const RasterView& view, const RasterPass& pass) const {
+  for (std::size_t i = 0; i < optics_.size() && pass.draw_optics; ++i)
+    if (pass.except != i && scene_.optics[i].kind == optics::OpticKind::mirror) return true;
+  return std::any_of(chunks_.begin(), chunks_.end(),
+                     [&](const Chunk& chunk) { return box_in_view(view, chunk.triangles.box).seen; });
 }
 
 std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, const RasterPass& pass) const {
@@ -251,9 +268,10 @@ std::vector<RasterScene::Draw> RasterScene::draws_of(const RasterView& view, con
   }
   // From front to back, so that what is hidden is not shaded; alpha-tested surfaces last, since they cost
   // more and hide less. Where chunks are equally near their order in the file decides.
+  const double sense = view.depth_of_near > view.depth_of_far ? 1 : -1;
   std::stable_sort(draws.begin(), draws.end(), [&](const Draw& a, const Draw& b) {
-    return std::tuple(batches_[chunks_[a.chunk].batch].alpha_test, a.nearest_mm) <
-           std::tuple(batches_[chunks_[b.chunk].batch].alpha_test, b.nearest_mm);
+    return std::tuple(batches_[chunks_[a.chunk].batch].alpha_test, sense * a.nearest_mm) <
+           std::tuple(batches_[chunks_[b.chunk].batch].alpha_test, sense * b.nearest_mm);
   });
   return draws;
 }
@@ -309,15 +327,30 @@ void RasterScene::draw_sky(const RasterPass& pass) {
 }
 
 void RasterScene::draw_optic_depth(const RasterView& view, const RasterOptic& surface) {
+  draw_depth(view, surface, 1, GL_LESS, true);
+}
+
+void RasterScene::draw_zooming_optic_depth(const RasterView& view, const RasterOptic& surface,
+                                           double beside_mm) {
+  const glm::dvec4 clip = view.projection * glm::dvec4(0, 0, -beside_mm, 1);
+  const double depth = std::clamp(clip.z / clip.w, 0.0, 1.0);
+  draw_depth(view, surface, float(view.depth_of_far + (view.depth_of_near - view.depth_of_far) * depth),
+             GL_GREATER, false);
+}
+
+void RasterScene::draw_depth(const RasterView& view, const RasterOptic& surface, float none, GLenum keep,
+                             bool skirt) {
   begin_view(view, 0);
-  const float nearest = 1;
-  glClearBufferfv(GL_DEPTH, 0, &nearest);
-  glDepthFunc(GL_LESS);
+  glClearBufferfv(GL_DEPTH, 0, &none);
+  glDepthFunc(keep);
   // The near plane may lie beyond the optic; its depth is then 1, and nothing is cut there but by that plane.
   glEnable(GL_DEPTH_CLAMP);
   glUseProgram(depth_program_.id());
   set_mesh_origin(view, surface);
-  surface.draw_surface_with_skirt();
+  if (skirt)
+    surface.draw_surface_with_skirt();
+  else
+    surface.draw_surface();
   glDisable(GL_DEPTH_CLAMP);
   glDepthFunc(GL_GREATER);
 }

@@ -56,7 +56,11 @@ class RasterScene {
 
   /// Clears the bound target and draws surroundings, optics as asked, and the sky.
   void draw(const RasterView& view, const RasterPass& pass);
-  /// The same in two steps. What is drawn between them hides what is behind it before that costs anything.
+  /// Whether any of the surroundings, or other optics as `pass` asks for them, may be seen.
+  [[nodiscard]] bool sees_anything(const RasterView& view, const RasterPass& pass) const;
+  /// Surroundings and optics as asked, without sky, where they hide what is in the bound target.
+  void draw_bodies(const RasterView& view, const RasterPass& pass);
+  /// draw() in two steps. What is drawn between them hides what is behind it before that costs anything.
   void clear(const RasterView& view, const RasterPass& pass);
   void draw_all(const RasterView& view, const RasterPass& pass);
 
@@ -64,6 +68,9 @@ class RasterScene {
   /// there are several. Depth is 1 (nearer than everything) where there is none. The bound target needs depth
   /// alone.
   void draw_optic_depth(const RasterView& view, const RasterOptic& surface);
+  /// In a zooming_view(): the surface alone, and where there is none the depth of `beside_mm` from the
+  /// viewpoint, which is also the least.
+  void draw_zooming_optic_depth(const RasterView& view, const RasterOptic& surface, double beside_mm);
 
   /// Makes `view` that of the following draws; draw() does so itself.
   void begin_view(const RasterView& view, float level_bias) const;
@@ -101,7 +108,9 @@ class RasterScene {
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
+  void draw_bodies_in_view(const RasterView& view, const RasterPass& pass);
   void draw_surroundings(const RasterView& view, const RasterPass& pass);
+  void draw_depth(const RasterView& view, const RasterOptic& surface, float none, GLenum keep, bool skirt);
   void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);

@@ -33,6 +33,17 @@ void offset_samples(glm::dmat4& projection, glm::ivec2 size, glm::dvec2 offset_p
   }
 }
 
+RasterView view_by(const glm::dmat4& eye_from_world, const glm::dmat4& projection, glm::ivec2 size,
+                   glm::dvec2 offset_px) {
+  RasterView raster;
+  raster.rotation = glm::dmat3(eye_from_world);
+  raster.origin_mm = -(glm::transpose(raster.rotation) * glm::dvec3(eye_from_world[3]));
+  raster.projection = projection;
+  raster.size = size;
+  offset_samples(raster.projection, size, offset_px);
+  return raster;
+}
+
 }  // namespace
 
 glm::dmat4 RasterView::clip_from_relative() const {
@@ -89,13 +100,15 @@ RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_
 }
 
 RasterView map_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
-  RasterView raster;
-  const glm::dmat4 eye_from_world = view.view_matrix();
-  raster.rotation = glm::dmat3(eye_from_world);
-  raster.origin_mm = -(glm::transpose(raster.rotation) * glm::dvec3(eye_from_world[3]));
-  raster.projection = view.projection_matrix();
-  raster.size = size;
-  offset_samples(raster.projection, size, offset_px);
+  RasterView raster = view_by(view.view_matrix(), view.projection_matrix(), size, offset_px);
+  if (view.zooms()) raster.depth_of_near = 0.5f;
+  return raster;
+}
+
+RasterView zooming_view(const optics::VirtualView& view, glm::ivec2 size, glm::dvec2 offset_px) {
+  RasterView raster = view_by(view.zooming_view_matrix(), view.zooming_projection_matrix(), size, offset_px);
+  raster.depth_of_near = 0.5f;
+  raster.depth_of_far = 1;
   return raster;
 }
 

@@ -14,10 +14,11 @@ namespace catoptra::render {
 
 /// Right-handed eye space (x right, y up, -z ahead); clip depth reversed: near -> 1, far -> 0.
 struct RasterView {
-  glm::dvec3 origin_mm{0};        ///< the eye; for a parallel projection, the origin of eye space
-  glm::dmat3 rotation{1};         ///< world axes to eye axes
-  glm::dmat4 projection{1};       ///< eye space to clip space
-  glm::ivec2 size{1, 1};          ///< pixels
+  glm::dvec3 origin_mm{0};                    ///< the eye; for a parallel projection, the origin of eye space
+  glm::dmat3 rotation{1};                     ///< world axes to eye axes
+  glm::dmat4 projection{1};                   ///< eye space to clip space
+  glm::ivec2 size{1, 1};                      ///< pixels
+  float depth_of_far = 0, depth_of_near = 1;  ///< what is stored for clip depth 0 and 1; the greater hides
   bool bottom_row_first = false;  ///< row 0 of what is drawn is the bottom one (cube maps), else the top one
 
   /// World position relative to the origin -> clip space.
@@ -41,9 +42,16 @@ struct RasterView {
 /// pixel at which the scene is sampled (x right, y down, see sampling.h).
 [[nodiscard]] RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px = {0, 0});
 
-/// The reflection map's view; `offset_px` as above, in texels.
+/// The reflection map's view; `offset_px` as above, in texels. Where it also shows a zooming region, the
+/// reversed one has the lower half of the stored depths.
 [[nodiscard]] RasterView map_view(const optics::VirtualView& view, glm::ivec2 size,
                                   glm::dvec2 offset_px = {0, 0});
+
+/// The zooming region of the same map, texel by texel, to be drawn over it: it has the upper half of the
+/// stored depths, turned round, since what is farther from the viewpoint is met first. `rotation` is a
+/// reflection (VirtualView::zooming_view_matrix). Requires view.zooms().
+[[nodiscard]] RasterView zooming_view(const optics::VirtualView& view, glm::ivec2 size,
+                                      glm::dvec2 offset_px = {0, 0});
 
 /// Face `face` (in OpenGL's order +x, -x, +y, -y, +z, -z) of a cube map around `center_mm`.
 [[nodiscard]] RasterView cube_face_view(const glm::dvec3& center_mm, int face, int size);

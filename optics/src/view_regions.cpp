@@ -1,0 +1,51 @@
+#include "optics/view_regions.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace catoptra::optics {
+namespace {
+
+/// Signed area, across the ray, of what one square millimetre across the eye's ray has become `distance_mm`
+/// behind the optic (per square of that distance where it is infinite).
+double beam_area(const VertexHit& hit, double distance_mm) {
+  const glm::dvec3 helper = std::abs(hit.from_eye.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 e1 = glm::normalize(glm::cross(hit.from_eye, helper)), e2 = glm::cross(hit.from_eye, e1);
+  const glm::dmat3 moved = std::isfinite(distance_mm)
+                               ? hit.differential.point + distance_mm * hit.differential.direction
+                               : hit.differential.direction;
+  return glm::dot(hit.direction, glm::cross(moved * e1, moved * e2));
+}
+
+bool crossed_once(const VertexHit& hit) {
+  const double distance = hit.scene_hit ? hit.scene_hit.t_mm : kInfinity;
+  return beam_area(hit, 0) * beam_area(hit, distance) < 0;
+}
+
+}  // namespace
+
+ViewRegions& ViewRegions::operator+=(const ViewRegions& other) {
+  vertices += other.vertices;
+  zooming += other.zooming;
+  between += other.between;
+  crossed_once += other.crossed_once;
+  return *this;
+}
+
+ViewRegions view_regions(std::span<const VertexHit> hits, const VirtualView& view) {
+  ViewRegions regions;
+  for (const VertexHit& hit : hits) {
+    if (!hit.faces_eye || hit.end != LensPathEnd::passed) continue;
+    ++regions.vertices;
+    regions.crossed_once += crossed_once(hit);
+    if (!hit.scene_hit || view.projection == MapProjection::parallel) continue;
+    const double depth = glm::dot(hit.hit_point_mm - view.viewpoint_mm, view.direction);
+    if (view.zooms() && depth <= -view.zooming_near_mm)
+      ++regions.zooming;
+    else if (depth < view.near_mm)
+      ++regions.between;
+  }
+  return regions;
+}
+
+}  // namespace catoptra::optics

@@ -1,0 +1,29 @@
+// Which part of what an optic's vertices meet its one virtual viewpoint can show: reversed region, zooming
+// region, the piece between them, and what lies behind one of two line foci (paper 4.2, Fig. 8; design 2.10).
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "optics/vertex_hits.h"
+#include "optics/virtual_view.h"
+
+namespace catoptra::optics {
+
+/// Numbers of vertices that show something. Those of several patches can be added.
+struct ViewRegions {
+  std::size_t vertices = 0;
+  std::size_t zooming = 0;  ///< what they meet lies in the zooming region
+  std::size_t between = 0;  ///< ... between optic and map, in neither region: the map does not show it
+  /// Neighbouring rays have crossed in one direction, and not in the other, before what they meet: it lies
+  /// between the two line foci of an astigmatic bundle (saddles, cylinders, oblique mirrors). A vertex shows
+  /// it all the same, yet no single viewpoint knows what hides what there.
+  std::size_t crossed_once = 0;
+
+  ViewRegions& operator+=(const ViewRegions& other);
+};
+
+/// Counts over the vertices of a mirror or of a lens at one wavelength. By ray differentials: Igehy 1999.
+[[nodiscard]] ViewRegions view_regions(std::span<const VertexHit> hits, const VirtualView& view);
+
+}  // namespace catoptra::optics
