@@ -83,7 +83,7 @@ TEST_P(Kaleidoscope, ImagesStandWhereTheWedgeRepeats) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Angles, Kaleidoscope,
-                         testing::Values(KaleidoscopeCase{90, {{0}, {1}, {0, 1}}},
+                         testing::Values(KaleidoscopeCase{90, {{0}, {1}, {1, 0}}},
                                          KaleidoscopeCase{60, {{0}, {1}, {0, 1}, {1, 0}, {0, 1, 0}}}),
                          [](const auto& tested) {
                            return "Degrees" + std::to_string(int(tested.param.angle_deg));
@@ -103,7 +103,7 @@ TEST(RayChain, WhatIsShownUnfoldsOntoTheEyesRay) {
       std::vector<int> path;
       for (int k = 0; k < 8; ++k) {
         path.push_back((first + k) % 2);
-        paths[path_of(path)] = path;
+        paths[path_by(path)] = path;
       }
     }
     std::map<std::size_t, int> by_bounces;
@@ -124,7 +124,8 @@ TEST(RayChain, WhatIsShownUnfoldsOntoTheEyesRay) {
       // The last point lies in the last mirror, and what is shown beyond it along that direction.
       const glm::dvec3 surface(frame.surface[i]);
       EXPECT_LT(std::abs(glm::dot(surface, wedge.normal[path.back()])), 3e-4);
-      EXPECT_LT(glm::length(glm::normalize(glm::dvec3(frame.position[i]) - surface) - direction), 3e-6);
+      const glm::dvec3 way = glm::dvec3(frame.position[i]) - surface;
+      EXPECT_LT(glm::length(way - glm::length(way) * direction), 2e-3) << "mm";
     }
     EXPECT_GE(by_bounces.size(), 2u);
     for (const auto& [bounces, count] : by_bounces) EXPECT_GT(count, 50) << bounces;
@@ -203,7 +204,7 @@ TEST(RayChain, PlaneAndSphereMirrorMagnifyAsTheMirrorEquationSays) {
     const render::CameraRays rays = render::camera_rays(scene.camera, 320, 240);
     const auto at = [&](int column, int row) { return std::size_t(row * 320 + column); };
     const std::size_t a = at(60, 120), b = at(260, 120);
-    ASSERT_EQ(frame.path[a], path_of({0, 1, 0}));
+    ASSERT_EQ(frame.path[a], path_by({0, 1, 0}));
     const double seen =
         (frame.position[b].y - frame.position[a].y) / (rays.direction(260, 120).y - rays.direction(60, 120).y);
     const double arm = kEyeToPlane + kPlaneToSphere, back = kPlaneToSphere + kWall;
@@ -237,8 +238,8 @@ SphereBounces bounces_in_sphere(glm::dvec3 from, glm::dvec3 direction, double ra
 TEST(RayChain, HollowMirrorSeesItselfAsTheSphereSays) {
   constexpr double kRadius = 110;
   render::Scene scene = dark_scene(6);
-  scene.optics.push_back(conic_mirror(-kRadius, 0, 170, 110, 81, 81));
-  scene.camera = {{20, 10, 300}, {0, 0, 0}, {0, 1, 0}, 0.5, {kWidth, kHeight}};
+  scene.optics.push_back(conic_mirror(-kRadius, 0, 200, 60, 161, 41));
+  scene.camera = {{90, 5, 300}, {75, 0, 40}, {0, 1, 0}, 0.3, {kWidth, kHeight}};
   const TracedScene traced(scene);
   const render::Frame frame = traced.render(kWidth, kHeight);
   std::map<int, int> counts;
@@ -246,7 +247,7 @@ TEST(RayChain, HollowMirrorSeesItselfAsTheSphereSays) {
   for (std::size_t i = 0; i < frame.color.size(); ++i) {
     if (frame.optic_id[i] < 0) continue;
     const auto wanted = bounces_in_sphere(scene.camera.eye_mm, ray_of(scene.camera, kWidth, kHeight, i),
-                                          kRadius, 85, 55, 6);
+                                          kRadius, 100, 30, 6);
     ++counts[wanted.count];
     if (frame.bounces[i] != wanted.count) {
       ++different;

@@ -47,7 +47,7 @@ inline render::Scene dark_scene(int depth) {
 }
 
 /// The number of a path by its optics in order.
-inline std::uint32_t path_of(const std::vector<int>& optics) {
+inline std::uint32_t path_by(const std::vector<int>& optics) {
   std::uint32_t path = 0;
   for (const int optic : optics) path = render::path_after(path, optic);
   return path;
