@@ -160,7 +160,7 @@ TEST(RayChainLens, LensBehindALensFollowsTheExactPath) {
 TEST(RayChainLens, LightSplitsAtTheFirstLensWithSeveralWavelengths) {
   Scene scene = room_behind_lens(70, 0.5);
   scene.optics.push_back(lens_of(400, 95.2, 2, 60, 25, 1));
-  scene.optics.push_back(moved(lens_of(120, -300, 6, 90, 25, 3, optics::abbe_medium(1.7, 20)), 50));
+  scene.optics.push_back(moved(lens_of(400, 120, 2, 90, 25, 3, optics::abbe_medium(1.7, 20)), 50));
   const Frame one = rendered(scene).frame;
   scene.optics[0].wavelengths = 3;
   const Frame three = rendered(scene).frame;
