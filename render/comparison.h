@@ -26,8 +26,8 @@ struct OpticError {
   /// Angle at the exact last surface point of the path (of the last optic along it) between the exact last
   /// direction and what is shown.
   ErrorQuantiles arcmin;
-  /// The same in pixels, through the local derivative of the exact last ray by pixel, among pixels of the same
-  /// path. Left out on caustics, where it is singular.
+  /// The same in pixels, through the local derivative of the exact last ray by pixel, among pixels of the
+  /// same path. Left out on caustics, where it is singular.
   ErrorQuantiles screen_px;
 };
 

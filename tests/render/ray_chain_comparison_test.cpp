@@ -80,11 +80,12 @@ TEST(ChainComparison, AngleIsMeasuredAtTheLastSurfacePoint) {
       continue;
     }
     const glm::dvec3 surface(reference.surface[i]), way = glm::dvec3(reference.position[i]) - surface,
-                     d(reference.direction[i]), e = glm::normalize(glm::cross(d, glm::dvec3(0, 1, 0)));
+                                                    d(reference.direction[i]),
+                                                    e = glm::normalize(glm::cross(d, glm::dvec3(0, 1, 0)));
     const double length = reference.position[i].w == 0 ? 1 : glm::length(way);
     const glm::dvec3 seen = std::cos(0.002) * d + std::sin(0.002) * e;
-    turned.position[i] = glm::vec4(
-        glm::vec3(reference.position[i].w == 0 ? seen : surface + length * seen), reference.position[i].w);
+    turned.position[i] = glm::vec4(glm::vec3(reference.position[i].w == 0 ? seen : surface + length * seen),
+                                   reference.position[i].w);
   }
   const render::ErrorQuantiles q = render::compare(reference, turned, traced.scene).optics[0].arcmin;
   const double wanted = 0.002 * 60 * 180 / std::acos(-1.0);
