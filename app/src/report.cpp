@@ -67,6 +67,23 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
   return entries;
 }
 
+ordered_json choice_json(const render::ModeChoice& choice) {
+  ordered_json costs = ordered_json::array();
+  for (const render::ModeCost& cost : choice.costs)
+    costs.push_back({{"mode", render::mode_name(cost.mode)},
+                     {"frame_ms", cost.frame_ms},
+                     {"measured", cost.measured},
+                     {"meets_error", cost.meets_error}});
+  return {{"mode", render::mode_name(choice.mode)},
+          {"reason", choice.reason},
+          {"costs", costs},
+          {"trial_ms", choice.trial_ms}};
+}
+
+render::Mode drawn_mode(render::Mode asked, const render::RenderResult& result) {
+  return result.choice ? result.choice->mode : asked;
+}
+
 ordered_json image_json(const render::ImageError& image) {
   return {{"psnr_db", std::min(image.psnr_db, kIdenticalPsnr_db)},
           {"psnr_linear_db", std::min(image.psnr_linear_db, kIdenticalPsnr_db)},
