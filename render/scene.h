@@ -33,15 +33,15 @@ struct Light {
 
 struct Environment {
   glm::vec3 color{0.45f, 0.6f, 0.85f};  ///< linear radiance where no `sky` is given
-  std::string sky;                      ///< path of an equirectangular image; empty: none. +z is up, centre is +y
-  float ambient = 0.3f;                 ///< irradiance from everywhere, white
+  std::string sky;       ///< path of an equirectangular image; empty: none. +z is up, centre is +y
+  float ambient = 0.3f;  ///< irradiance from everywhere, white
 };
 
 struct RenderSettings {
   std::string mode = "pvrr";
   double max_error_px = 0;  ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
   double patch_fov_rad = 1.047;
-  int depth = 3;
+  int depth = 3;  ///< greatest number of optics along a path, at least 1
   double chord_mm = 0.01;
   double angle_rad = 0.0873;
   double texels_per_pixel = 1.5;

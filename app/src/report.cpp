@@ -57,6 +57,7 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
     if (errors) {
       entry["outline_pixels"] = errors->at(i).outline_pixels;
       entry["touching_pixels"] = errors->at(i).touching_pixels;
+      entry["other_path_pixels"] = errors->at(i).other_path_pixels;
       entry["error_arcmin"] = quantiles_json(errors->at(i).arcmin);
       entry["error_px"] = quantiles_json(errors->at(i).screen_px);
     }
