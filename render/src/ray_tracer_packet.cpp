@@ -1,7 +1,6 @@
 #include "render/src/ray_tracer_packet.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -35,11 +34,6 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
   }
 }
 
-/// Of the triangle that lane `i` has met; anything where it has met none.
-glm::vec3 unit_normal(const optics::RayPacket16& hits, int i) {
-  return glm::normalize(glm::vec3(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]));
-}
-
 /// Where its light does not pass, a lens counts as a body like any other.
 void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
                          Frame& frame) {
@@ -58,6 +52,15 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
     frame.optic_id[at] = passed ? lanes.optic[i] : -1;
     frame.bounces[at] = passed ? 1 : 0;
     frame.path[at] = passed ? path_after(0, lanes.optic[i]) : 0;
+  }
+}
+
+/// Where colours come from maps, what these show.
+void write_shown(const PixelPacket& pixels, const MapLanes& found, Frame& frame) {
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i] || !found.found(i)) continue;
+    glm::vec4& position = frame.position[index_of(pixels, i, frame)];
+    position = glm::vec4(found.shown(i), position.w);
   }
 }
 
@@ -205,8 +208,9 @@ void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
 
 /// Colours (and where asked for, geometry) of the lanes that show lenses: the sum over the wavelengths of
 /// what their rays meet. Returns the number of rays behind the lenses.
-std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pixels, Packet& p,
-                                  Frame* geometry) const {
+std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pixels, const MapColors* maps,
+                                  Packet& p, Frame* geometry) const {
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
   std::size_t rays = 0;
   lenses_.enter(view.camera, p.column, p.row, p.lens);
   std::fill(std::begin(p.lens.radiance), std::end(p.lens.radiance), Float4{});
@@ -221,52 +225,117 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       if (!out.passed[i]) out.shade.footprint[i] = 0;
       rays += out.passed[i] ? 1 : 0;
     }
-    shading_.shade(out.shade);
-    if (sample == 0 && geometry) write_lens_geometry(pixels, p.lens, out, *geometry);
-    if (chains_.possible()) {
-      const GeometrySink sink{sample == 0 ? geometry : nullptr, nullptr};
-      rays += follow_lenses(pixels, p, sample, {}, out, sink);
+    MapLanes found;
+    if (maps) {
+      float half_pixel[kLanes];
+      set_half_pixels(out.beams, out.rays, half_pixel);
+      int optic[kLanes];
+      for (int i = 0; i < kLanes; ++i) optic[i] = out.passed[i] ? p.lens.optic[i] : -1;
+      find_in_maps(*maps, out.rays, optic, first_optic, float(optics::kSelfHitDistance_mm), half_pixel,
+                   found);
+      for (int i = 0; i < kLanes; ++i) {
+        out.shade.active[i] = out.passed[i] && !found.found(i);
+        p.traced[i] = p.traced[i] || (found.asked[i] && !found.found(i));
+      }
     }
+    shading_.shade(out.shade);
+    for (int i = 0; i < kLanes; ++i)
+      if (found.found(i)) out.shade.radiance[i] = found.radiance(i);
+    if (sample == 0 && geometry) {
+      write_lens_geometry(pixels, p.lens, out, *geometry);
+      write_shown(pixels, found, *geometry);
+    }
+    if (chains_.possible())
+      rays += follow_lenses(pixels, p, sample, {}, out, {sample == 0 ? geometry : nullptr});
     lenses_.add_colors(sample, out, p.lens);
+  }
+  return rays;
+}
+
+/// The mirrored hits that maps know are not shaded.
+void PacketTracer::take_mirrored_colors(const CameraRays& camera, const MapColors& maps, Packet& p) const {
+  float half_pixel[kLanes];
+  set_half_pixels(p.mirror.out, p.second, camera.pixel, p.stretch, half_pixel);
+  find_in_maps(maps, p.second, p.optic, static_cast<std::uint32_t>(scene_.surroundings.size()), 0, half_pixel,
+               p.found);
+  for (int i = 0; i < kLanes; ++i) {
+    p.shade.active[i] = p.shade.active[i] && !p.found.found(i);
+    p.traced[i] = p.found.asked[i] && !p.found.found(i);
+  }
+}
+
+/// Leaves the lanes' colours of one sample in p.color, and with `mapped` in p.traced whether an optic shows
+/// what its maps do not know.
+std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOptions& options,
+                                       const PixelPacket& pixels, int sample, const MappedSample* mapped,
+                                       Frame& frame, Packet& p) const {
+  const CameraRays& camera = view.camera;
+  std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
+  std::fill(std::begin(p.traced), std::end(p.traced), false);
+  std::fill(std::begin(p.found.answers.found), std::end(p.found.answers.found), 0);
+  primary(view, pixels, sample_offset(sample, std::max(1, options.samples)), p);
+  reflect(camera, p);
+  set_hits(camera, p);
+  if (mapped && p.any_mirror) take_mirrored_colors(camera, mapped->maps, p);
+  shading_.shade(p.shade);
+  for (int i = 0; i < kLanes; ++i)
+    if (p.found.found(i)) p.shade.radiance[i] = p.found.radiance(i);
+  const bool geometry = sample == 0 && options.geometry;
+  if (geometry) {
+    write_geometry(camera, pixels, p, frame);
+    write_shown(pixels, p.found, frame);
+  }
+  std::size_t rays = 0;
+  if (p.any_mirror && chains_.possible())
+    rays += follow_mirrors(camera, pixels, p, {}, {geometry ? &frame : nullptr});
+  if (p.lens.any)
+    rays += refract(view, pixels, mapped ? &mapped->maps : nullptr, p, geometry ? &frame : nullptr);
+  for (int i = 0; i < kLanes; ++i) {
+    const bool mirrored = p.optic[i] >= 0;
+    if (p.lens.any && p.lens.optic[i] >= 0) {
+      p.color[i] = p.lens.radiance[i];
+      ++rays;
+      continue;
+    }
+    p.color[i] = mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
+    rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
   }
   return rays;
 }
 
 std::size_t PacketTracer::trace(const PacketView& view, const FrameOptions& options,
                                 const PixelPacket& pixels, Frame& frame) const {
-  const CameraRays& camera = view.camera;
   Packet p;
-  std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   const int samples = std::max(1, options.samples);
   Float4 sum[kLanes] = {};
   std::size_t rays = 0;
   for (int sample = 0; sample < samples; ++sample) {
-    primary(view, pixels, sample_offset(sample, samples), p);
-    reflect(camera, p);
-    set_hits(camera, p);
-    shading_.shade(p.shade);
-    const bool geometry = sample == 0 && options.geometry;
-    if (geometry) write_geometry(camera, pixels, p, frame);
-    if (p.any_mirror && chains_.possible())
-      rays += follow_mirrors(camera, pixels, p, {}, {geometry ? &frame : nullptr, nullptr});
-    if (p.lens.any) rays += refract(view, pixels, p, geometry ? &frame : nullptr);
-    for (int i = 0; i < kLanes; ++i) {
-      const bool mirrored = p.optic[i] >= 0;
-      if (p.lens.any && p.lens.optic[i] >= 0) {
-        sum[i] += p.lens.radiance[i];
-        ++rays;
-        continue;
-      }
-      sum[i] += mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
-      rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
-    }
+    rays += trace_sample(view, options, pixels, sample, nullptr, frame, p);
+    for (int i = 0; i < kLanes; ++i) sum[i] += p.color[i];
   }
   const float share = 1 / float(samples);
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i]) continue;
     const Float4 c = share * sum[i];
-    frame.color[std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i])] =
-        glm::vec4(c[0], c[1], c[2], 1);
+    frame.color[index_of(pixels, i, frame)] = glm::vec4(c[0], c[1], c[2], 1);
+  }
+  return rays;
+}
+
+std::size_t PacketTracer::trace_mapped(const PacketView& view, const FrameOptions& options,
+                                       const PixelPacket& pixels, const MappedSample& mapped,
+                                       Frame& frame) const {
+  Packet p;
+  const std::size_t rays = trace_sample(view, options, pixels, mapped.sample, &mapped, frame, p);
+  const float share = 1 / float(std::max(1, options.samples));
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i]) continue;
+    const std::size_t at = index_of(pixels, i, frame);
+    const Float4 c = share * p.color[i];
+    frame.color[at] += glm::vec4(c[0], c[1], c[2], 0);
+    if (p.traced[i]) mapped.traced[at] = 1;
+    const bool through_lens = p.lens.any && p.lens.optic[i] >= 0;
+    if (through_lens || p.optic[i] >= 0) mapped.owner[at] = through_lens ? p.lens.optic[i] : p.optic[i];
   }
   return rays;
 }
@@ -292,59 +361,6 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
     frame.bounces[at] = mirrored ? 1 : 0;
     frame.path[at] = mirrored ? path_after(0, p.optic[i]) : 0;
   }
-}
-
-std::size_t PacketTracer::trace_exact(const PacketView& view, glm::dvec2 offset_px, std::size_t extreme,
-                                      const PixelPacket& pixels, ExactPixels& exact) const {
-  Packet p;
-  primary(view, pixels, offset_px, p);
-  reflect(view.camera, p);
-  std::size_t rays = 0;
-  PixelPacket mirrored = pixels;
-  for (int i = 0; i < kLanes; ++i) {
-    rays += pixels.active[i] ? (p.optic[i] >= 0 ? 2u : 1u) : 0u;
-    mirrored.active[i] = pixels.active[i] && p.optic[i] >= 0;
-    if (mirrored.active[i]) exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(p.second, i);
-  }
-  if (p.any_mirror) {
-    write_geometry(view.camera, mirrored, p, exact.frame);
-    if (chains_.possible())
-      rays += follow_mirrors(view.camera, pixels, p, {false, extreme}, {&exact.frame, &exact.normal});
-  }
-  return p.lens.any ? rays + refract_exact(view, extreme, pixels, p, exact) : rays;
-}
-
-std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extreme,
-                                        const PixelPacket& pixels, Packet& p, ExactPixels& exact) const {
-  std::size_t rays = 0;
-  std::array<std::size_t, kLanes> sample{};  // lenses differ in their number of wavelengths
-  for (int i = 0; i < kLanes; ++i)
-    if (p.lens.optic[i] >= 0)
-      sample[std::size_t(i)] = extreme_sample(lenses_.sample_count_of(std::size_t(p.lens.optic[i])), extreme);
-  lenses_.enter(view.camera, p.column, p.row, p.lens);
-  PixelPacket waiting = pixels;
-  for (int i = 0; i < kLanes; ++i) waiting.active[i] = pixels.active[i] && p.lens.optic[i] >= 0;
-  for (int first = 0; first < kLanes; ++first) {
-    if (!waiting.active[first]) continue;
-    PixelPacket now = waiting;
-    for (int i = 0; i < kLanes; ++i) {
-      now.active[i] = waiting.active[i] && sample[std::size_t(i)] == sample[std::size_t(first)];
-      if (now.active[i]) waiting.active[i] = false;
-    }
-    RefractedLanes out;
-    lenses_.refract(p.lens, sample[std::size_t(first)], out);
-    rays_.intersect16(out.rays, optics::kEverything, true);
-    write_lens_geometry(now, p.lens, out, exact.frame);
-    for (int i = 0; i < kLanes; ++i) {
-      if (!now.active[i] || !out.passed[i]) continue;
-      exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(out.rays, i);
-      ++rays;
-    }
-    if (chains_.possible())
-      rays += follow_lenses(now, p, sample[std::size_t(first)], {false, extreme}, out,
-                            {&exact.frame, &exact.normal});
-  }
-  return rays;
 }
 
 std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view,

@@ -108,7 +108,6 @@ void PacketTracer::write_ends(const PixelPacket& pixels, const MetOptics& met, c
     frame.direction[at] = ends.direction[i];
     frame.bounces[at] = ends.bounces[i];
     frame.path[at] = ends.path[i];
-    if (sink.normal) (*sink.normal)[at] = ends.normal[i];
   }
 }
 

@@ -23,6 +23,9 @@ struct alignas(64) PacketTracer::Packet {
   int optic[PixelPacket::kLanes];       ///< whose reflecting side the pixel shows; -1: none
   bool any_mirror;
   LensLanes lens;
+  MapLanes found;                    ///< of the mirrored hits
+  bool traced[PixelPacket::kLanes];  ///< an optic shows what maps do not know
+  Float4 color[PixelPacket::kLanes];
 };
 
 }  // namespace catoptra::render
