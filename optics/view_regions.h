@@ -10,11 +10,15 @@
 
 namespace catoptra::optics {
 
+inline constexpr double kCloseCrossing = 0.1;
+
 /// Numbers of vertices that show something. Those of several patches can be added.
 struct ViewRegions {
   std::size_t vertices = 0;
   std::size_t zooming = 0;  ///< what they meet lies in the zooming region
-  std::size_t between = 0;  ///< ... between optic and map, in neither region: the map does not show it
+  /// It stands so close to where the rays cross that it lies in neither region, or that the ray passes the
+  /// viewpoint by more than kCloseCrossing of half the map's width there: what hides what is lost.
+  std::size_t close = 0;
   /// Neighbouring rays have crossed in one direction, and not in the other, before what they meet: it lies
   /// between the two line foci of an astigmatic bundle (saddles, cylinders, oblique mirrors). A vertex shows
   /// it all the same, yet no single viewpoint knows what hides what there.

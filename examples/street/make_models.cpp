@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "examples/room/dressing_table.h"
 #include "examples/room/room.h"
 #include "examples/room/room_palette.h"
 #include "examples/room/spectacles.h"
@@ -27,7 +28,7 @@ constexpr Housing kHousings[] = {
     {"convex_1200", 0.170f, 0.110f, 1.2f},   {"convex_3000", 0.170f, 0.110f, 3.0f},
     {"plane", 0.170f, 0.110f, 0.0f},         {"concave_3000", 0.170f, 0.110f, -3.0f},
     {"concave_1200", 0.170f, 0.110f, -1.2f}, {"interior", 0.240f, 0.062f, 0.0f},
-    {"makeup", 0.170f, 0.120f, -0.8f}};
+    {"makeup", 0.170f, 0.120f, -0.8f},       {"dressing", 0.170f, 0.130f, -0.6f}};
 
 void write(const std::filesystem::path& file, const Model& model, const Palette& palette) {
   const auto bytes = write_glb(model, palette, file.stem().string());
@@ -57,6 +58,7 @@ int main(int argc, char** argv) try {
           make_housing(housing.width_m, housing.height_m, housing.radius_m), palette);
   write(folder / "wall.glb", make_wall(), palette);
   write(folder / "room.glb", make_room(), palette);
+  write(folder / "dressing_table.glb", make_dressing_table(), palette);
   write(folder / "spectacle_frame.glb", make_spectacle_frame({}), palette);
   write(folder / "hand_lens.glb", make_hand_lens(0.065f), palette);
   return 0;

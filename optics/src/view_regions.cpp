@@ -1,5 +1,6 @@
 #include "optics/view_regions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -22,12 +23,19 @@ bool crossed_once(const VertexHit& hit) {
   return beam_area(hit, 0) * beam_area(hit, distance) < 0;
 }
 
+/// Whether the ray is off the viewpoint by too much of the map's width at that depth.
+bool passes_wide(const VertexHit& hit, const VirtualView& view, double depth_mm) {
+  const double miss = glm::length(glm::cross(hit.surface_point_mm - view.viewpoint_mm, hit.direction));
+  const double half_width = 0.5 * depth_mm * std::max(view.right_side - view.left, view.top - view.bottom);
+  return miss > kCloseCrossing * half_width;
+}
+
 }  // namespace
 
 ViewRegions& ViewRegions::operator+=(const ViewRegions& other) {
   vertices += other.vertices;
   zooming += other.zooming;
-  between += other.between;
+  close += other.close;
   crossed_once += other.crossed_once;
   return *this;
 }
@@ -38,12 +46,11 @@ ViewRegions view_regions(std::span<const VertexHit> hits, const VirtualView& vie
     if (!hit.faces_eye || hit.end != LensPathEnd::passed) continue;
     ++regions.vertices;
     regions.crossed_once += crossed_once(hit);
-    if (!hit.scene_hit || view.projection == MapProjection::parallel) continue;
+    if (!hit.scene_hit || !view.beyond_viewpoint) continue;
     const double depth = glm::dot(hit.hit_point_mm - view.viewpoint_mm, view.direction);
-    if (view.zooms() && depth <= -view.zooming_near_mm)
-      ++regions.zooming;
-    else if (depth < view.near_mm)
-      ++regions.between;
+    const bool zooming = view.zooms() && depth <= -view.zooming_near_mm;
+    regions.zooming += zooming;
+    regions.close += (!zooming && depth < view.near_mm) || passes_wide(hit, view, std::abs(depth));
   }
   return regions;
 }

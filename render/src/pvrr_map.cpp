@@ -9,6 +9,8 @@ namespace {
 constexpr int kSmallest = 16, kLargest = 4096;
 // Sizes come in steps, so that a moving camera does not ask for new textures in every frame.
 constexpr int kStep = 32;
+// Beside the optic the zooming region ends at this share of its depth: see PvrrMap::draw.
+constexpr double kBeside = 0.9;
 
 double twice_area(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
   const glm::dvec2 u = b - a, v = c - a;
@@ -104,7 +106,7 @@ void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const
   if (!scene.sees_anything(back, pass)) return;
   zooming_ = back;
   bind_optic_depth();
-  scene.draw_zooming_optic_depth(back, surface, 0.5 * view.zooming_far_mm);
+  scene.draw_zooming_optic_depth(back, surface, kBeside * view.zooming_far_mm);
   pass.clip_depth = &optic_depth_;
   pass.clip_reach_mm = optics::kInfinity;
   target_->bind(pass.geometry);

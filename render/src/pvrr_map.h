@@ -52,8 +52,8 @@ class PvrrMap {
   /// on this side of the lens), is cut per fragment by its depth.
   /// Where the rays converge in front of the optic the zooming region is drawn over the reversed one: light
   /// meets it first (design 2.10), and both have the same map coordinates. What lies behind the optic is cut
-  /// by its depth, and beside the optic what is farther than half-way to it: rays that leave near its border
-  /// can only be out there once they are near their crossing, and the optic's own frame is not to be seen.
+  /// by its depth; so is, beside the optic, the last tenth of the way back to it: there stands its own frame,
+  /// which rays that leave near its border do not meet.
   /// `offset_px`: place of the samples within a texel.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
             const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "examples/room/dressing_table.h"
 #include "examples/room/room_palette.h"
 #include "examples/room/spectacles.h"
 #include "examples/street/palette.h"
@@ -54,6 +55,16 @@ TEST(Spectacles, FrameLeavesTheLensesClear) {
     for (const Vertex& v : surface.vertices) {
       const float x = std::abs(v.position.x) - size.pupil_distance / 2;
       EXPECT_GT(std::hypot(x, v.position.z), size.lens_diameter / 2 - 0.001f) << name;
+    }
+}
+
+TEST(DressingTable, ThingsStandInsideTheFocalLength) {
+  const Model table = make_dressing_table();
+  expect_sound(table);
+  for (const char* name : {"blue glaze", "gilt", "tail light", "letter chart", "pages"})
+    for (const Vertex& v : table.surfaces.at(name).vertices) {
+      EXPECT_GT(v.position.y, 0.10f) << name;
+      EXPECT_LT(v.position.y, 0.25f) << name;
     }
 }
 

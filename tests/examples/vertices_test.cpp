@@ -157,9 +157,9 @@ class ExampleVertices : public ::testing::TestWithParam<std::filesystem::path> {
   }
 
   /// Distances from the viewpoint at which lines of sight within half a texel of the exact hit meet
-  /// something, from the mirror on.
+  /// something, from the mirror on; negative in the zooming region.
   struct Neighbourhood {
-    double nearest = optics::kInfinity, farthest = 0;
+    double nearest = optics::kInfinity, farthest = -optics::kInfinity;
   };
   [[nodiscard]] Neighbourhood around(const Map& map, const Shown& exact, const glm::dvec3& surface) const {
     const glm::dvec3 at =
@@ -171,7 +171,13 @@ class ExampleVertices : public ::testing::TestWithParam<std::filesystem::path> {
             map.view.map_ray(at.x / at.z + 0.25 * i / map.texels.x, at.y / at.z + 0.25 * j / map.texels.y);
         if (!map.view.beyond_viewpoint)
           ray.t_min_mm = std::max(ray.t_min_mm, glm::dot(surface - ray.origin_mm, ray.direction));
-        const double distance = surroundings_.intersect(ray, optics::kSurroundings).t_mm;
+        double back = 0;
+        if (map.view.zooms()) {  // from the mirror
+          back = glm::dot(ray.origin_mm - surface, ray.direction);
+          ray.origin_mm -= back * ray.direction;
+          ray.t_min_mm = 0;
+        }
+        const double distance = surroundings_.intersect(ray, optics::kSurroundings).t_mm - back;
         result.nearest = std::min(result.nearest, distance);
         result.farthest = std::max(result.farthest, distance);
       }
@@ -196,9 +202,15 @@ class ExampleVertices : public ::testing::TestWithParam<std::filesystem::path> {
     // Along parallel lines a texel has one size everywhere; along those from a viewpoint it grows with the
     // distance, and for the sky, a direction, it is an angle.
     const glm::dvec3 from = map.perspective() ? map.view.viewpoint_mm : place;
-    const double exact_mm = exact.sky ? optics::kInfinity : glm::distance(exact.point_mm, from);
-    const double shown_mm = shown.sky ? optics::kInfinity : glm::distance(shown.point_mm, from);
-    const double half_texel = 0.5 * map.texel() * (map.perspective() && !exact.sky ? exact_mm : 1.0);
+    const auto distance_mm = [&](const Shown& what) {
+      const double distance = what.sky ? optics::kInfinity : glm::distance(what.point_mm, from);
+      const bool zoomed =
+          map.view.zooms() && !what.sky && glm::dot(what.point_mm - from, map.view.direction) < 0;
+      return zoomed ? -distance : distance;
+    };
+    const double exact_mm = distance_mm(exact), shown_mm = distance_mm(shown);
+    const double half_texel =
+        0.5 * map.texel() * (map.perspective() && !exact.sky ? std::abs(exact_mm) : 1.0);
     if (exact.sky == shown.sky && glm::distance(exact.point_mm, shown.point_mm) <= half_texel) {
       ++tally.exact;
       return;

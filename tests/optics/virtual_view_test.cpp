@@ -10,6 +10,7 @@
 #include <random>
 
 #include "cad_import/error.h"
+#include "optics/view_regions.h"
 #include "tests/support/analytic_optic.h"
 
 namespace catoptra::optics {
@@ -161,6 +162,68 @@ TEST(VirtualView, NearTheAxisOfASphereObeysTheMirrorEquation) {
   check(1200, 400);  // concave, eye inside the focal length: behind the mirror, as for convex
   check(1200, 800);  // concave, eye beyond the focal length: rays converge before the mirror
   check(1200, 1200);
+}
+
+// R 600, the eye at 1.5 m: rays cross 375 mm before the mirror.
+TEST(VirtualView, ZoomingRegionHasTheMapCoordinatesOfTheReversedOne) {
+  const Optic mirror = test::conic_mirror(-600, 0, 80, 80, 9, 9);
+  const auto hits = hits_on_wall(mirror, {20, 0, 1500});
+  const VirtualView view = make_virtual_view(mirror, hits, kBounds);
+  ASSERT_TRUE(view.zooms());
+  EXPECT_GT(view.zooming_far_mm, 375);
+  EXPECT_LT(view.zooming_near_mm, 100);
+  const glm::dmat4 clip = view.zooming_projection_matrix() * view.zooming_view_matrix();
+  for (const double part : {0.0, 0.3, 1.0})
+    for (const double s : {0.1, 0.8}) {
+      const double t = 0.7, back = view.zooming_near_mm + part * (view.zooming_far_mm - view.zooming_near_mm);
+      const glm::dvec3 ray = view.map_ray(s, t).direction;
+      const glm::dvec3 point = view.viewpoint_mm - back / glm::dot(ray, view.direction) * ray;
+      const glm::dvec3 h = view.project_point(point);
+      EXPECT_NEAR(h.x / h.z, s, 1e-9);
+      const glm::dvec4 c = clip * glm::dvec4(point, 1);
+      EXPECT_NEAR(0.5 + 0.5 * c.x / c.w, s, 1e-9);
+      EXPECT_NEAR(0.5 + 0.5 * c.y / c.w, t, 1e-9);
+      EXPECT_NEAR(c.w, back, 1e-9);
+      if (part == 0 || part == 1) {
+        EXPECT_NEAR(c.z / c.w, 1 - part, 1e-9);
+      }
+    }
+  for (const VertexHit& hit : hits)
+    for (const double part : {0.0, 0.5, 1.0}) {
+      const double along = glm::dot(hit.direction, view.direction),
+                   depth = glm::dot(hit.surface_point_mm - view.viewpoint_mm, view.direction);
+      const glm::dvec3 p =
+          hit.surface_point_mm + part * (-view.zooming_near_mm - depth) / along * hit.direction;
+      const glm::dvec4 c = clip * glm::dvec4(p, 1);
+      EXPECT_LE(std::max(std::abs(c.x), std::abs(c.y)), c.w * (1 + 1e-9));
+    }
+}
+
+TEST(VirtualView, RegionsOfWhatVerticesMeet) {
+  const auto at = [](const Optic& mirror, const glm::dvec3& eye, double distance) {
+    auto hits = reflect_vertices(mirror, eye);
+    for (VertexHit& hit : hits) {
+      hit.scene_hit.object = 0;
+      hit.scene_hit.t_mm = distance;
+      hit.hit_point_mm = hit.surface_point_mm + distance * hit.direction;
+    }
+    return view_regions(hits, make_virtual_view(mirror, hits, kBounds));
+  };
+  const Optic sphere = test::conic_mirror(-600, 0, 80, 80, 9, 9);
+  EXPECT_EQ(at(sphere, {0, 0, 1500}, 200).zooming, 81u);
+  EXPECT_EQ(at(sphere, {0, 0, 1500}, 2000).zooming, 0u);
+  EXPECT_EQ(at(sphere, {0, 0, 1500}, 2000).crossed_once, 0u);
+  EXPECT_EQ(at(sphere, {0, 0, 1500}, 375.3).close, 81u);
+  // 40 degrees off, f / cos and f cos: line foci at 258 and 526 mm (Coddington, 1 / s' = 2 / (R cos) - 1 /
+  // s).
+  const glm::dvec3 aside = 1500.0 * glm::dvec3(std::sin(0.7), 0, std::cos(0.7));
+  EXPECT_EQ(at(sphere, aside, 200).crossed_once, 0u);
+  EXPECT_EQ(at(sphere, aside, 380).crossed_once, 81u);
+  EXPECT_EQ(at(sphere, aside, 800).crossed_once, 0u);
+  const Optic saddle = test::rectangular_mirror(
+      std::make_shared<test::TwoCurvatureSurface>(1 / 400.0, -1 / 400.0, 0, 60, 60), 120, 120, 5, 5);
+  EXPECT_EQ(at(saddle, {0, 0, 800}, 100).crossed_once, 0u);
+  EXPECT_EQ(at(saddle, {0, 0, 800}, 3000).crossed_once, 25u);
 }
 
 TEST(VirtualView, EyeAtTheFocusOfAParaboloidFallsBackToParallel) {

@@ -160,6 +160,27 @@ TEST(ZoomingRegion, OfTwoCrossingPlatesTheOneNearerToTheLensIsSeen) {
   expect_order(scene, {2 * near - 0.1, -2 * near + 0.1, 2 * near - 0.1, 596});
 }
 
+// Seen from behind, as the map is drawn, a surface still shows the side that the optic sees, in the light
+// that falls there: the light shines from the mirror, and the box's other sides are dark.
+TEST(ZoomingRegion, IsLitOnTheSideThatTheOpticSees) {
+  Scene scene = before_concave_mirror(1500);
+  scene.environment.ambient = 0.1f;
+  scene.lights = {
+      {LightKind::directional, glm::normalize(glm::dvec3(0.1, 0.5, 1)), {}, glm::vec3(1), 0.8f, 0, true}};
+  add_box(scene.surroundings[0], {-8, 8, 150}, {8, 12, 200}, kYellow);
+  Renderer renderer(scene);
+  const Frame exact = renderer.render(Mode::raytrace, scene.camera, picture_of(scene)).frame,
+              frame = renderer.render(Mode::pvrr, scene.camera, picture_of(scene)).frame;
+  std::size_t lit = 0, wrong = 0;
+  for (std::size_t i = 0; i < frame.color.size(); ++i) {
+    if (exact.optic_id[i] != 0 || exact.position[i].w == 0 || exact.color[i].r < 0.3f) continue;
+    ++lit;
+    wrong += std::abs(frame.color[i].r - exact.color[i].r) > 0.02f;
+  }
+  EXPECT_GT(lit, 2000u);
+  EXPECT_LT(wrong, lit / 50);  // outlines
+}
+
 /// Pixels of the optic that show something with this much red and blue: magenta.
 std::size_t magenta_pixels(const Frame& frame) {
   std::size_t count = 0;
