@@ -1,13 +1,12 @@
-// Mode `exact`: the picture of mode pvrr, every pixel of an optic verified, and traced where it is wrong
-// (design 2.9).
+// Mode `exact`: exact rays in every pixel of an optic, which take their colours from the maps of mode pvrr where
+// these show what the rays meet (design 2.9; docs/decisions/0009-exact-mode.md).
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "render/frame.h"
-#include "render/src/exact_pixels.h"
+#include "render/src/map_colors.h"
 #include "render/src/optic_mask.h"
 #include "render/src/pvrr_frame.h"
 #include "render/src/raster_picture.h"
@@ -18,26 +17,28 @@ namespace catoptra::render {
 /// Keeps its memory from frame to frame; needs the same current context throughout.
 class ExactFrame {
  public:
-  /// Draws with `pvrr`, and keeps the references.
-  ExactFrame(const Scene& scene, const RasterScene& raster, PvrrFrame& pvrr);
+  /// Draws maps with `pvrr` and what stands around the optics with `raster`; keeps the references.
+  ExactFrame(const Scene& scene, RasterScene& raster, PvrrFrame& pvrr);
 
-  /// Every sample is verified, behind a lens at the reference, shortest and longest wavelength; a pixel with
-  /// a sample that is wrong (see agrees()) is traced with all its samples, at all wavelengths. The picture is
-  /// put together on the CPU and so always read back. `tracer` has the optics where `pvrr` has them. Overlays
-  /// are left out. Times: those of mode pvrr, "verify", "retrace".
+  /// A pixel in which some sample, or behind a lens some wavelength, meets what no map shows is counted as
+  /// retraced, and that sample is shaded as in mode raytrace. The picture is put together on the CPU and so
+  /// always read back. `tracer` has the optics where `pvrr` has them. Times: "trace", "pass1" and "pass2" as in
+  /// mode pvrr (the latter without optics), "verify": the exact rays and their colours, "readback", "total".
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
                                     const RayTracer& tracer);
 
  private:
-  struct Verification;
-  void verify_sample(Verification& v, int sample, const RasterView& view);
-  void compare_pixels(Verification& v, std::span<const std::uint32_t> pixels);
+  [[nodiscard]] std::vector<std::uint32_t> pixels_of_optics(const Camera& camera, const FrameOptions& options);
+  void start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels);
+  void take_traced(std::span<const std::uint32_t> pixels, RenderResult& result);
 
   const Scene& scene_;
+  RasterScene& raster_;
   PvrrFrame& pvrr_;
   OpticMask mask_;
-  Frame shown_;  ///< geometry of the sample in hand
-  ExactPixels exact_;
+  MapColors maps_;
+  Frame traced_;  ///< what the rays show: only the pixels of the optics count
+  std::vector<std::int32_t> owner_;
 };
 
 }  // namespace catoptra::render

@@ -10,6 +10,10 @@
 
 namespace catoptra::render {
 
+/// How far off a pixel of mode exact may be and count as right: the larger of the two.
+inline constexpr double kExactTolerance_arcmin = 1.0;  ///< at the optic, 1 arcmin: visual acuity 1.0
+inline constexpr double kExactTolerance_px = 0.5;
+
 inline constexpr double kArcminPerRad = 60 * 180 / std::numbers::pi;
 
 // `reference` has the exact rays, surface point and direction, where its `optic_id` is an optic's; `frame` is

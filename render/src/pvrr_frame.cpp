@@ -54,38 +54,44 @@ void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
   }
 }
 
-RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
-                               const SampleDone& sample_done) {
+void PvrrFrame::update(const Camera& camera, const FrameOptions& options) {
+  const RasterView view = camera_view(camera, {options.width, options.height});
+  for (PvrrPatch& patch : patches_) patch.update(view, options);
+}
+
+void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+  for (PvrrPatch& patch : patches_) patch.draw_map(offset_px, geometry, overlay);
+}
+
+void PvrrFrame::copy_maps(MapColors& maps) const {
+  maps.clear(patches_.size());
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    if (patches_[i].faces_eye()) maps.add(i, patches_[i].map().view(), patches_[i].map().target());
+}
+
+RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
   RenderResult result;
   double trace_ms = 0, pass1_ms = 0, pass2_ms = 0, readback_ms = 0;
   const glm::ivec2 size(options.width, options.height);
-  FrameOptions drawn = options;
-  drawn.geometry = options.geometry || sample_done;
   Overlay* const overlay = options.overlay_vertices || options.overlay_rays ? &overlay_ : nullptr;
   const double total_ms = gl_time_ms([&] {
     trace_ms = gl_time_ms([&] {
-      picture.begin(drawn);
-      const RasterView view = camera_view(camera, size);
-      for (PvrrPatch& patch : patches_) patch.update(view, drawn);
+      picture.begin(options);
+      update(camera, options);
       set_overlay(options);
       const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
       update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
     for (int sample = 0; sample < options.samples; ++sample) {
       const glm::dvec2 offset = sample_offset(sample, options.samples);
-      const bool geometry = drawn.geometry && (sample == 0 || sample_done);
-      pass1_ms += gl_time_ms([&] {
-        for (PvrrPatch& patch : patches_) patch.draw_map(offset, geometry, overlay);
-      });
+      const bool geometry = options.geometry && sample == 0;
+      pass1_ms += gl_time_ms([&] { draw_maps(offset, geometry, overlay); });
       pass2_ms += gl_time_ms([&] {
         draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
         picture.add_sample();
       });
-      if (sample_done) sample_done(sample, camera_view(camera, size, offset));
     }
-    if (options.read_back)
-      readback_ms =
-          gl_time_ms([&] { result.frame = sample_done ? picture.read_color() : picture.read_back(); });
+    if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
   });
 
   result.stats = statistics();
@@ -167,21 +173,6 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
   set_optic_uniforms(optic, index);
   patch.set_map(offset_px, geometry);
   patch.seen_surface().draw_surface();
-}
-
-bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterView& view,
-                                      glm::dvec2 offset_px, std::size_t extreme) {
-  bool any = false;
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const PvrrPatch& patch = patches_[i];
-    if (scene_.optics[i].kind != optics::OpticKind::lens || !patch.faces_eye()) continue;
-    const auto samples = extreme_samples(patch.lens().sample_count());
-    if (extreme >= samples.size()) continue;
-    any = true;
-    patch.lens().draw_geometry(view, target, samples[extreme], lens_programs_, i,
-                               [&](bool geometry) { patch.set_map(offset_px, geometry); });
-  }
-  return any;
 }
 
 FrameStats PvrrFrame::statistics() const {

@@ -1,12 +1,12 @@
 // Mode `pvrr`: a frame by per-vertex reflection and refraction (paper 3.1, 4.5; design 2).
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "render/frame.h"
+#include "render/src/map_colors.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/pvrr_patch.h"
 #include "render/src/raster_lens.h"
@@ -30,16 +30,14 @@ class PvrrFrame {
   /// Times: "trace" (vertex rays, viewpoints, map coordinates), "pass1", "pass2", "readback", "total". A
   /// warning tells how many pixels of an optic its map does not reach; in a mirror they show the sky in the
   /// outgoing direction, in a lens the map's border.
-  /// With `sample_done` every sample has geometry, which is in the picture's target when it is called.
-  using SampleDone = std::function<void(int sample, const RasterView& view)>;
-  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
-                                    const SampleDone& sample_done = {});
+  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture);
 
-  /// For SampleDone: writes the geometry of wavelength `extreme` of extreme_samples() in place of that of the
-  /// reference wavelength, for every lens that has so many; for lenses with fewer, what was there stays.
-  /// Returns whether there is any such lens.
-  bool draw_extreme_geometry(const RasterTarget& target, const RasterView& view, glm::dvec2 offset_px,
-                             std::size_t extreme);
+  /// For mode exact, the parts of render(): vertex rays, viewpoints and sizes of the maps; the maps of a
+  /// sample, which are then copied into `maps`; and what they have cost.
+  void update(const Camera& camera, const FrameOptions& options);
+  void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  void copy_maps(MapColors& maps) const;
+  [[nodiscard]] FrameStats statistics() const;
 
  private:
   void bounds_changed(const cad_import::BoundingBox& bounds);
@@ -49,7 +47,6 @@ class PvrrFrame {
   void draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
                   glm::dvec2 offset_px, bool geometry);
   [[nodiscard]] std::vector<std::string> map_warnings() const;
-  [[nodiscard]] FrameStats statistics() const;
   const GlProgram& mirror_program(bool geometry);
 
   const Scene& scene_;

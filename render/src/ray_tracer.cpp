@@ -144,12 +144,12 @@ std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& op
   });
 }
 
-std::size_t RayTracer::trace_exact(const Camera& camera, const FrameOptions& options, glm::dvec2 offset_px,
-                                   std::size_t extreme, std::span<const std::uint32_t> pixels,
-                                   ExactPixels& exact) const {
+std::size_t RayTracer::trace_mapped(const Camera& camera, const FrameOptions& options,
+                                    std::span<const std::uint32_t> pixels, const MappedSample& mapped,
+                                    Frame& frame) const {
   const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
   return for_packets(options, pixels, [&](const PixelPacket& packet) {
-    return impl_->packets.trace_exact(view, offset_px, extreme, packet, exact);
+    return impl_->packets.trace_mapped(view, options, packet, mapped, frame);
   });
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "optics/ray_scene.h"
 #include "render/frame.h"
 #include "render/scene.h"
-#include "render/src/exact_pixels.h"
+#include "render/src/ray_tracer_mapped.h"
 #include "render/src/textures.h"
 
 namespace catoptra::render {
@@ -36,12 +35,11 @@ class RayTracer {
   std::size_t trace_pixels(const Camera& camera, const FrameOptions& options,
                            std::span<const std::uint32_t> pixels, Frame& frame) const;
 
-  /// Where the exact rays of the pixels listed leave an optic, and what they meet: see
-  /// PacketTracer::trace_exact. Pixels that show no optic are left as they are. Returns the number of rays
-  /// traced.
-  std::size_t trace_exact(const Camera& camera, const FrameOptions& options, glm::dvec2 offset_px,
-                          std::size_t extreme, std::span<const std::uint32_t> pixels,
-                          ExactPixels& exact) const;
+  /// Mode `exact`: the same for one sample, whose share is added to the colours in `frame`. What the rays meet
+  /// behind an optic is shaded only where its maps do not show it.
+  std::size_t trace_mapped(const Camera& camera, const FrameOptions& options,
+                           std::span<const std::uint32_t> pixels, const MappedSample& mapped,
+                           Frame& frame) const;
 
   /// Tells that the mesh of optic `index` has changed (the ray scene is updated by its owner).
   void optic_changed(std::size_t index);

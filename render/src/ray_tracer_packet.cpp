@@ -1,12 +1,10 @@
 #include "render/src/ray_tracer_packet.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "optics/vertex_hits.h"
-#include "render/src/lens_rays.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -75,11 +73,6 @@ std::size_t index_of(const PixelPacket& pixels, int i, const Frame& frame) {
   return std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
 }
 
-/// Of the triangle that lane `i` has met; anything where it has met none.
-glm::vec3 unit_normal(const optics::RayPacket16& hits, int i) {
-  return glm::normalize(glm::vec3(hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]));
-}
-
 /// Where its light does not pass, a lens counts as a body like any other.
 void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, const RefractedLanes& out,
                          Frame& frame) {
@@ -96,6 +89,15 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
     frame.surface[at] = passed ? glm::vec3(exit) : glm::vec3(0);
     frame.direction[at] = passed ? glm::vec3(direction) : glm::vec3(0);
     frame.optic_id[at] = passed ? lanes.optic[i] : -1;
+  }
+}
+
+/// Where colours come from maps, what these show.
+void write_shown(const PixelPacket& pixels, const MapLanes& found, Frame& frame) {
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i] || !found.found[i]) continue;
+    glm::vec4& position = frame.position[index_of(pixels, i, frame)];
+    position = glm::vec4(found.shown[i], position.w);
   }
 }
 
@@ -126,6 +128,9 @@ struct alignas(64) PacketTracer::Packet {
   int optic[kLanes];                   ///< whose reflecting side the pixel shows; -1: none
   bool any_mirror;
   LensLanes lens;
+  MapLanes found;       ///< of the mirrored hits
+  bool traced[kLanes];  ///< an optic shows what maps do not know
+  Float4 color[kLanes];
 };
 
 PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
@@ -275,8 +280,9 @@ void PacketTracer::set_hits(const CameraRays& camera, Packet& p) const {
 
 /// Colours (and where asked for, geometry) of the lanes that show lenses: the sum over the wavelengths of
 /// what their rays meet. Returns the number of rays behind the lenses.
-std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pixels, Packet& p,
-                                  Frame* geometry) const {
+std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pixels, const MapColors* maps,
+                                  Packet& p, Frame* geometry) const {
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
   std::size_t rays = 0;
   lenses_.enter(view.camera, p.column, p.row, p.lens);
   std::fill(std::begin(p.lens.radiance), std::end(p.lens.radiance), Float4{});
@@ -291,46 +297,111 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       if (!out.passed[i]) out.shade.footprint[i] = 0;
       rays += out.passed[i] ? 1 : 0;
     }
+    MapLanes found;
+    if (maps) {
+      float half_pixel[kLanes];
+      set_half_pixels(out.beams, out.rays, half_pixel);
+      int optic[kLanes];
+      for (int i = 0; i < kLanes; ++i) optic[i] = out.passed[i] ? p.lens.optic[i] : -1;
+      find_in_maps(*maps, out.rays, optic, first_optic, float(optics::kSelfHitDistance_mm), half_pixel, found);
+      for (int i = 0; i < kLanes; ++i) {
+        out.shade.active[i] = out.passed[i] && !found.found[i];
+        p.traced[i] = p.traced[i] || (found.asked[i] && !found.found[i]);
+      }
+    }
     shading_.shade(out.shade);
+    for (int i = 0; i < kLanes; ++i)
+      if (found.found[i]) out.shade.radiance[i] = found.radiance[i];
     lenses_.add_colors(sample, out, p.lens);
-    if (sample == 0 && geometry) write_lens_geometry(pixels, p.lens, out, *geometry);
+    if (sample == 0 && geometry) {
+      write_lens_geometry(pixels, p.lens, out, *geometry);
+      write_shown(pixels, found, *geometry);
+    }
+  }
+  return rays;
+}
+
+/// The mirrored hits that maps know are not shaded.
+void PacketTracer::take_mirrored_colors(const CameraRays& camera, const MapColors& maps, Packet& p) const {
+  float half_pixel[kLanes];
+  set_half_pixels(p.mirror.out, p.second, camera.pixel, p.stretch, half_pixel);
+  find_in_maps(maps, p.second, p.optic, static_cast<std::uint32_t>(scene_.surroundings.size()), 0, half_pixel,
+               p.found);
+  for (int i = 0; i < kLanes; ++i) {
+    p.shade.active[i] = p.shade.active[i] && !p.found.found[i];
+    p.traced[i] = p.found.asked[i] && !p.found.found[i];
+  }
+}
+
+/// Leaves the lanes' colours of one sample in p.color, and with `mapped` in p.traced whether an optic shows
+/// what its maps do not know.
+std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOptions& options,
+                                       const PixelPacket& pixels, int sample, const MappedSample* mapped,
+                                       Frame& frame, Packet& p) const {
+  const CameraRays& camera = view.camera;
+  std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
+  std::fill(std::begin(p.traced), std::end(p.traced), false);
+  std::fill(std::begin(p.found.found), std::end(p.found.found), false);
+  primary(view, pixels, sample_offset(sample, std::max(1, options.samples)), p);
+  reflect(camera, p);
+  set_hits(camera, p);
+  if (mapped && p.any_mirror) take_mirrored_colors(camera, mapped->maps, p);
+  shading_.shade(p.shade);
+  for (int i = 0; i < kLanes; ++i)
+    if (p.found.found[i]) p.shade.radiance[i] = p.found.radiance[i];
+  const bool geometry = sample == 0 && options.geometry;
+  if (geometry) {
+    write_geometry(camera, pixels, p, frame);
+    write_shown(pixels, p.found, frame);
+  }
+  std::size_t rays = 0;
+  if (p.lens.any) rays += refract(view, pixels, mapped ? &mapped->maps : nullptr, p, geometry ? &frame : nullptr);
+  for (int i = 0; i < kLanes; ++i) {
+    const bool mirrored = p.optic[i] >= 0;
+    if (p.lens.any && p.lens.optic[i] >= 0) {
+      p.color[i] = p.lens.radiance[i];
+      ++rays;
+      continue;
+    }
+    p.color[i] = mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
+    rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
   }
   return rays;
 }
 
 std::size_t PacketTracer::trace(const PacketView& view, const FrameOptions& options,
                                 const PixelPacket& pixels, Frame& frame) const {
-  const CameraRays& camera = view.camera;
   Packet p;
-  std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   const int samples = std::max(1, options.samples);
   Float4 sum[kLanes] = {};
   std::size_t rays = 0;
   for (int sample = 0; sample < samples; ++sample) {
-    primary(view, pixels, sample_offset(sample, samples), p);
-    reflect(camera, p);
-    set_hits(camera, p);
-    shading_.shade(p.shade);
-    const bool geometry = sample == 0 && options.geometry;
-    if (geometry) write_geometry(camera, pixels, p, frame);
-    if (p.lens.any) rays += refract(view, pixels, p, geometry ? &frame : nullptr);
-    for (int i = 0; i < kLanes; ++i) {
-      const bool mirrored = p.optic[i] >= 0;
-      if (p.lens.any && p.lens.optic[i] >= 0) {
-        sum[i] += p.lens.radiance[i];
-        ++rays;
-        continue;
-      }
-      sum[i] += mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
-      rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
-    }
+    rays += trace_sample(view, options, pixels, sample, nullptr, frame, p);
+    for (int i = 0; i < kLanes; ++i) sum[i] += p.color[i];
   }
   const float share = 1 / float(samples);
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i]) continue;
     const Float4 c = share * sum[i];
-    frame.color[std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i])] =
-        glm::vec4(c[0], c[1], c[2], 1);
+    frame.color[index_of(pixels, i, frame)] = glm::vec4(c[0], c[1], c[2], 1);
+  }
+  return rays;
+}
+
+std::size_t PacketTracer::trace_mapped(const PacketView& view, const FrameOptions& options,
+                                       const PixelPacket& pixels, const MappedSample& mapped,
+                                       Frame& frame) const {
+  Packet p;
+  const std::size_t rays = trace_sample(view, options, pixels, mapped.sample, &mapped, frame, p);
+  const float share = 1 / float(std::max(1, options.samples));
+  for (int i = 0; i < kLanes; ++i) {
+    if (!pixels.active[i]) continue;
+    const std::size_t at = index_of(pixels, i, frame);
+    const Float4 c = share * p.color[i];
+    frame.color[at] += glm::vec4(c[0], c[1], c[2], 0);
+    if (p.traced[i]) mapped.traced[at] = 1;
+    const bool through_lens = p.lens.any && p.lens.optic[i] >= 0;
+    if (through_lens || p.optic[i] >= 0) mapped.owner[at] = through_lens ? p.lens.optic[i] : p.optic[i];
   }
   return rays;
 }
@@ -354,54 +425,6 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
     frame.direction[at] = mirrored ? glm::vec3(direction) : glm::vec3(0);
     frame.optic_id[at] = p.optic[i];
   }
-}
-
-std::size_t PacketTracer::trace_exact(const PacketView& view, glm::dvec2 offset_px, std::size_t extreme,
-                                      const PixelPacket& pixels, ExactPixels& exact) const {
-  Packet p;
-  primary(view, pixels, offset_px, p);
-  reflect(view.camera, p);
-  std::size_t rays = 0;
-  PixelPacket mirrored = pixels;
-  for (int i = 0; i < kLanes; ++i) {
-    rays += pixels.active[i] ? (p.optic[i] >= 0 ? 2u : 1u) : 0u;
-    mirrored.active[i] = pixels.active[i] && p.optic[i] >= 0;
-    if (mirrored.active[i]) exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(p.second, i);
-  }
-  if (p.any_mirror) write_geometry(view.camera, mirrored, p, exact.frame);
-  return p.lens.any ? rays + refract_exact(view, extreme, pixels, p, exact) : rays;
-}
-
-std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extreme,
-                                        const PixelPacket& pixels, Packet& p, ExactPixels& exact) const {
-  std::size_t rays = 0;
-  std::array<std::size_t, kLanes> sample{};  // lenses differ in their number of wavelengths
-  for (int i = 0; i < kLanes; ++i)
-    if (p.lens.optic[i] >= 0) {
-      const auto extremes = extreme_samples(lenses_.sample_count_of(std::size_t(p.lens.optic[i])));
-      sample[std::size_t(i)] = extremes[std::min(extreme, extremes.size() - 1)];
-    }
-  lenses_.enter(view.camera, p.column, p.row, p.lens);
-  PixelPacket waiting = pixels;
-  for (int i = 0; i < kLanes; ++i) waiting.active[i] = pixels.active[i] && p.lens.optic[i] >= 0;
-  for (int first = 0; first < kLanes; ++first) {
-    if (!waiting.active[first]) continue;
-    PixelPacket now = waiting;
-    for (int i = 0; i < kLanes; ++i) {
-      now.active[i] = waiting.active[i] && sample[std::size_t(i)] == sample[std::size_t(first)];
-      if (now.active[i]) waiting.active[i] = false;
-    }
-    RefractedLanes out;
-    lenses_.refract(p.lens, sample[std::size_t(first)], out);
-    rays_.intersect16(out.rays, optics::kEverything, true);
-    write_lens_geometry(now, p.lens, out, exact.frame);
-    for (int i = 0; i < kLanes; ++i) {
-      if (!now.active[i] || !out.passed[i]) continue;
-      exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(out.rays, i);
-      ++rays;
-    }
-  }
-  return rays;
 }
 
 std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view,

@@ -6,9 +6,9 @@
 
 #include "optics/ray_scene.h"
 #include "render/frame.h"
-#include "render/src/exact_pixels.h"
 #include "render/src/ray_tracer_exact.h"
 #include "render/src/ray_tracer_lens.h"
+#include "render/src/ray_tracer_mapped.h"
 #include "render/src/sampling.h"
 #include "render/src/shading.h"
 
@@ -49,11 +49,10 @@ class PacketTracer {
   std::size_t trace(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                     Frame& frame) const;
 
-  /// Writes where the rays through the pixels' centres, moved by `offset_px`, leave an optic and what they
-  /// meet, for the active pixels that show one. Behind a lens the ray is that of wavelength `extreme` of
-  /// extreme_samples(), or of the last of them where there are fewer. Returns the number of rays.
-  std::size_t trace_exact(const PacketView& view, glm::dvec2 offset_px, std::size_t extreme,
-                          const PixelPacket& pixels, ExactPixels& exact) const;
+  /// Of one sample alone, whose share is added to the colours in `frame`; geometry is that of sample 0. What
+  /// maps do not know is shaded as in trace().
+  std::size_t trace_mapped(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
+                           const MappedSample& mapped, Frame& frame) const;
 
   /// The reflected and refracted rays of the pixels' centres.
   [[nodiscard]] std::vector<SecondaryPacket> secondary_rays(const PacketView& view,
@@ -70,11 +69,13 @@ class PacketTracer {
   void reflect(const CameraRays& camera, Packet& p) const;
   bool find_mirrors(Packet& p) const;
   static void load_reflected(Packet& p);
-  std::size_t refract(const PacketView& view, const PixelPacket& pixels, Packet& p, Frame* geometry) const;
+  std::size_t trace_sample(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
+                           int sample, const MappedSample* mapped, Frame& frame, Packet& p) const;
+  std::size_t refract(const PacketView& view, const PixelPacket& pixels, const MapColors* maps, Packet& p,
+                      Frame* geometry) const;
+  void take_mirrored_colors(const CameraRays& camera, const MapColors& maps, Packet& p) const;
   void query_skipping_own_optic(Packet& p) const;
   void set_hits(const CameraRays& camera, Packet& p) const;
-  std::size_t refract_exact(const PacketView& view, std::size_t extreme, const PixelPacket& pixels, Packet& p,
-                            ExactPixels& exact) const;
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
                       Frame& frame) const;
 

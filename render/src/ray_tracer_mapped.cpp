@@ -1,0 +1,80 @@
+#include "render/src/ray_tracer_mapped.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace catoptra::render {
+namespace {
+
+constexpr int kLanes = MapLanes::kLanes;
+
+bool meets_nothing(const optics::RayPacket16& rays, int i) {
+  return rays.object[i] == optics::kNoHit;
+}
+
+MapQuery query_of(const optics::RayPacket16& rays, int i, float before_mm, float half_pixel) {
+  MapQuery query;
+  query.sky = meets_nothing(rays, i);
+  query.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
+  query.half_pixel = half_pixel;
+  if (query.sky) return query;
+  query.point_mm = glm::vec3(rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]) +
+                   rays.t_max[i] * query.direction;
+  query.normal = glm::normalize(glm::vec3(rays.normal_x[i], rays.normal_y[i], rays.normal_z[i]));
+  query.distance_mm = before_mm + rays.t_max[i];
+  return query;
+}
+
+/// The less of the two singular values of a matrix with these columns, whose directions are across a ray.
+double least_singular_value(const glm::dvec3& x, const glm::dvec3& y) {
+  const double sum = glm::dot(x, x) + glm::dot(y, y), area = glm::length(glm::cross(x, y));
+  const double largest = 0.5 * (std::sqrt(std::max(0.0, sum + 2 * area)) + std::sqrt(std::max(0.0, sum - 2 * area)));
+  return largest > 0 ? area / largest : 0;
+}
+
+}  // namespace
+
+void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays, const int (&optic)[kLanes],
+                  std::uint32_t first_optic, float before_mm, const float (&half_pixel)[kLanes],
+                  MapLanes& lanes) {
+  for (int i = 0; i < kLanes; ++i) {
+    lanes.asked[i] = optic[i] >= 0;
+    lanes.found[i] = false;
+    if (!lanes.asked[i] || (!meets_nothing(rays, i) && rays.object[i] >= first_optic)) continue;
+    const auto color = maps.find(std::size_t(optic[i]), query_of(rays, i, before_mm, half_pixel[i]));
+    lanes.found[i] = color.has_value();
+    if (!color) continue;
+    lanes.radiance[i] = Float4{color->radiance.r, color->radiance.g, color->radiance.b, 0};
+    lanes.shown[i] = color->shown;
+  }
+}
+
+void set_half_pixels(const MirrorRays& mirrored, const optics::RayPacket16& rays, double pixel,
+                     const double (&stretch)[kLanes], float (&half_pixel)[kLanes]) {
+  for (int i = 0; i < kLanes; ++i) {
+    // Off the camera's axis a pixel is narrower, as seen from the eye, by up to the square of the stretch.
+    const double half_angle = 0.5 * pixel / (stretch[i] * stretch[i]);
+    const double sum = mirrored.wave_sum[i], product = mirrored.wave_product[i];
+    const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product)), width = half_angle * mirrored.distance[i];
+    const double k1 = 0.5 * (sum - root), k2 = 0.5 * (sum + root), way = rays.t_max[i];
+    half_pixel[i] = meets_nothing(rays, i)
+                        ? float(width * std::min(std::abs(k1), std::abs(k2)))
+                        : float(width * std::min(std::abs(1 + way * k1), std::abs(1 + way * k2)));
+  }
+}
+
+void set_half_pixels(const BeamLanes& beams, const optics::RayPacket16& rays, float (&half_pixel)[kLanes]) {
+  for (int i = 0; i < kLanes; ++i) {
+    glm::dvec3 right = beams.direction_right.at(i), down = beams.direction_down.at(i);
+    if (!meets_nothing(rays, i)) {
+      right = beams.point_right.at(i) + double(rays.t_max[i]) * right;
+      down = beams.point_down.at(i) + double(rays.t_max[i]) * down;
+    }
+    const glm::dvec3 d = beams.direction.at(i);
+    half_pixel[i] =
+        float(0.5 * least_singular_value(right - glm::dot(right, d) * d, down - glm::dot(down, d) * d));
+  }
+}
+
+}  // namespace catoptra::render
