@@ -1,5 +1,5 @@
-// Mode `exact`: exact rays in every pixel of an optic, which take their colours from the maps of mode pvrr where
-// these show what the rays meet (design 2.9; docs/decisions/0009-exact-mode.md).
+// Mode `exact`: exact rays in every pixel of an optic, which take their colours from the maps of mode pvrr
+// where these show what the rays meet (design 2.9; docs/decisions/0009-exact-mode.md).
 #pragma once
 
 #include <cstdint>
@@ -22,13 +22,15 @@ class ExactFrame {
 
   /// A pixel in which some sample, or behind a lens some wavelength, meets what no map shows is counted as
   /// retraced, and that sample is shaded as in mode raytrace. The picture is put together on the CPU and so
-  /// always read back. `tracer` has the optics where `pvrr` has them. Times: "trace", "pass1" and "pass2" as in
-  /// mode pvrr (the latter without optics), "verify": the exact rays and their colours, "readback", "total".
+  /// always read back. `tracer` has the optics where `pvrr` has them. Times: "trace", "pass1" and "pass2" as
+  /// in mode pvrr (the latter without optics), "verify": the exact rays and their colours, "readback",
+  /// "total".
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
                                     const RayTracer& tracer);
 
  private:
-  [[nodiscard]] std::vector<std::uint32_t> pixels_of_optics(const Camera& camera, const FrameOptions& options);
+  [[nodiscard]] std::vector<std::uint32_t> pixels_of_optics(const Camera& camera,
+                                                            const FrameOptions& options);
   void start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels);
   void take_traced(std::span<const std::uint32_t> pixels, RenderResult& result);
 

@@ -14,6 +14,9 @@ namespace {
 
 constexpr float kTolerance_rad = float(kExactTolerance_arcmin / kArcminPerRad);
 constexpr std::size_t kChannels = 4;
+// Texels larger than so many pixels, or arcminutes, show a blur. (Two would be the least that any map has
+// somewhere: it is made for the mean, and an optic's edges magnify less.)
+constexpr float kCoarsest = 3;
 // Less of a texel than that says little of its colour.
 constexpr float kLeastWeight = 1.0f / 256;
 
@@ -23,8 +26,8 @@ float from_half(std::uint16_t half) {
   return half & 0x8000u ? -magnitude : magnitude;
 }
 
-/// What float coordinates leave uncertain of the distance of a point from a plane, mm: coordinates of the point
-/// and of the texel, the distance along the ray and the depth in the map.
+/// What float coordinates leave uncertain of the distance of a point from a plane, mm: coordinates of the
+/// point and of the texel, the distance along the ray and the depth in the map.
 float rounding_mm(const glm::vec3& point, float map_depth_mm) {
   constexpr float kRoundings = 8;
   const glm::vec3 a = glm::abs(point);
@@ -41,8 +44,8 @@ struct MapColors::Texels {
   float weight[4];
   bool complete = true;  ///< none is beyond the map's border
 
-  /// Leaves those that `keep` (index, offset) accepts. Returns whether all are left; their weights then add up
-  /// to 1, and do after normalise().
+  /// Leaves those that `keep` (index, offset) accepts. Returns whether all are left; their weights then add
+  /// up to 1, and do after normalise().
   template <typename Keep>
   bool filter(const Keep& keep) {
     bool all = complete;
@@ -127,7 +130,8 @@ std::optional<MapColors::Texels> MapColors::texels_at(const Map& map, glm::vec3 
   for (int k = 0; k < 4; ++k) {
     const int i = column + k % 2, j = row + k / 2;
     const bool inside = i >= 0 && j >= 0 && i < map.size.x && j < map.size.y;
-    texels.index[k] = inside ? map.first + std::size_t(j) * std::size_t(map.size.x) + std::size_t(i) : map.first;
+    texels.index[k] =
+        inside ? map.first + std::size_t(j) * std::size_t(map.size.x) + std::size_t(i) : map.first;
     texels.complete = texels.complete && inside;
     texels.offset[k] = {float(k % 2) - right, float(k / 2) - down};
     texels.weight[k] = inside ? (k % 2 ? right : 1 - right) * (k / 2 ? down : 1 - down) : 0.0f;
@@ -158,6 +162,13 @@ std::optional<MapColor> MapColors::find_point(const Map& map, const MapQuery& qu
   if (!(slope * glm::dot(query.normal, query.direction) > 0)) return std::nullopt;
   const float per_texel_x = 1 / map.scale_x, per_texel_y = 1 / map.scale_y;
   const glm::vec2 at = map.perspective ? glm::vec2(place) / place.z : glm::vec2(place);
+  // A texel's sides, across the ray.
+  const float along_x = glm::dot(query.direction, map.right), along_y = glm::dot(query.direction, map.up);
+  const float texel_mm = (map.perspective ? place.z : 1.0f) *
+                         std::max(std::abs(per_texel_x) * std::sqrt(std::max(0.0f, 1 - along_x * along_x)),
+                                  std::abs(per_texel_y) * std::sqrt(std::max(0.0f, 1 - along_y * along_y)));
+  if (!(texel_mm <= kCoarsest * std::max(kTolerance_rad * query.distance_mm, 2 * query.half_pixel)))
+    return std::nullopt;
   const float allowed = kTolerance_rad * query.distance_mm + rounding_mm(query.point_mm, place.z);
   glm::vec3 seen[4];  // what the texels show, along right, up and ahead
   int k = 0;
@@ -181,18 +192,18 @@ std::optional<MapColor> MapColors::find_point(const Map& map, const MapQuery& qu
 }
 
 std::optional<MapColor> MapColors::find_sky(const Map& map, const MapQuery& query) const {
-  auto texels =
-      map.perspective ? texels_at(map, {glm::dot(query.direction, map.right), glm::dot(query.direction, map.up),
-                                        glm::dot(query.direction, map.ahead)})
-                      : std::nullopt;
+  auto texels = map.perspective
+                    ? texels_at(map, {glm::dot(query.direction, map.right), glm::dot(query.direction, map.up),
+                                      glm::dot(query.direction, map.ahead)})
+                    : std::nullopt;
   if (!texels) return std::nullopt;
   const bool all = texels->filter([&](std::size_t index, glm::vec2) { return depths_[index] == 0; });
   MapColor found{glm::vec3(0), query.direction};
   if (!all) {
     if (!texels->normalise()) return std::nullopt;
     const glm::vec2 moved = texels->displacement() / glm::vec2(map.scale_x, map.scale_y);
-    const glm::vec3 shown = query.direction / glm::dot(query.direction, map.ahead) + moved.x * map.right +
-                            moved.y * map.up;
+    const glm::vec3 shown =
+        query.direction / glm::dot(query.direction, map.ahead) + moved.x * map.right + moved.y * map.up;
     found.shown = glm::normalize(shown);
     if (!(glm::length(found.shown - query.direction) <= std::max(kTolerance_rad, query.half_pixel)))
       return std::nullopt;

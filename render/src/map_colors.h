@@ -1,5 +1,5 @@
-// What reflection maps know of points of the scene: their colour where the map's viewpoint sees them. By it mode
-// exact takes colours from the maps of mode pvrr (docs/decisions/0009-exact-mode.md).
+// What reflection maps know of points of the scene: their colour where the map's viewpoint sees them. By it
+// mode exact takes colours from the maps of mode pvrr (docs/decisions/0009-exact-mode.md).
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,18 @@ namespace catoptra::render {
 
 /// What an exact ray meets behind an optic.
 struct MapQuery {
-  glm::vec3 point_mm{0};     ///< of the surroundings; unused for the sky
-  glm::vec3 direction{0};    ///< of the ray, unit
-  glm::vec3 normal{0};       ///< unit, of the triangle met, either sense
-  float distance_mm = 0;     ///< along the ray from the optic to the point
-  float half_pixel = 0;      ///< half the least width of the pixel's beam there, mm; of the sky, rad
+  glm::vec3 point_mm{0};   ///< of the surroundings; unused for the sky
+  glm::vec3 direction{0};  ///< of the ray, unit
+  glm::vec3 normal{0};     ///< unit, of the triangle met, either sense
+  float distance_mm = 0;   ///< along the ray from the optic to the point
+  float half_pixel = 0;    ///< half the least width of the pixel's beam there, mm; of the sky, rad
   bool sky = false;
 };
 
 struct MapColor {
   glm::vec3 radiance{0};
-  glm::vec3 shown{0};  ///< the place (or, of the sky, the unit direction) whose colour it is; within the tolerance of pixel_error.h
+  glm::vec3 shown{0};  ///< the place (or, of the sky, the unit direction) whose colour it is; within the
+                       ///< tolerance of pixel_error.h
 };
 
 /// Copies of maps on the CPU, any number per optic.

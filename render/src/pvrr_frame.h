@@ -30,7 +30,8 @@ class PvrrFrame {
   /// Times: "trace" (vertex rays, viewpoints, map coordinates), "pass1", "pass2", "readback", "total". A
   /// warning tells how many pixels of an optic its map does not reach; in a mirror they show the sky in the
   /// outgoing direction, in a lens the map's border.
-  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture);
+  [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
+                                    RasterPicture& picture);
 
   /// For mode exact, the parts of render(): vertex rays, viewpoints and sizes of the maps; the maps of a
   /// sample, which are then copied into `maps`; and what they have cost.

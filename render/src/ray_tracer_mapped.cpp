@@ -4,10 +4,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "render/src/pixel_error.h"
+
 namespace catoptra::render {
 namespace {
 
 constexpr int kLanes = MapLanes::kLanes;
+constexpr double kHalf = 0.8 * kExactTolerance_px;  // see set_half_pixels()
 
 bool meets_nothing(const optics::RayPacket16& rays, int i) {
   return rays.object[i] == optics::kNoHit;
@@ -19,8 +22,8 @@ MapQuery query_of(const optics::RayPacket16& rays, int i, float before_mm, float
   query.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
   query.half_pixel = half_pixel;
   if (query.sky) return query;
-  query.point_mm = glm::vec3(rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]) +
-                   rays.t_max[i] * query.direction;
+  query.point_mm =
+      glm::vec3(rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]) + rays.t_max[i] * query.direction;
   query.normal = glm::normalize(glm::vec3(rays.normal_x[i], rays.normal_y[i], rays.normal_z[i]));
   query.distance_mm = before_mm + rays.t_max[i];
   return query;
@@ -29,7 +32,8 @@ MapQuery query_of(const optics::RayPacket16& rays, int i, float before_mm, float
 /// The less of the two singular values of a matrix with these columns, whose directions are across a ray.
 double least_singular_value(const glm::dvec3& x, const glm::dvec3& y) {
   const double sum = glm::dot(x, x) + glm::dot(y, y), area = glm::length(glm::cross(x, y));
-  const double largest = 0.5 * (std::sqrt(std::max(0.0, sum + 2 * area)) + std::sqrt(std::max(0.0, sum - 2 * area)));
+  const double largest =
+      0.5 * (std::sqrt(std::max(0.0, sum + 2 * area)) + std::sqrt(std::max(0.0, sum - 2 * area)));
   return largest > 0 ? area / largest : 0;
 }
 
@@ -54,9 +58,10 @@ void set_half_pixels(const MirrorRays& mirrored, const optics::RayPacket16& rays
                      const double (&stretch)[kLanes], float (&half_pixel)[kLanes]) {
   for (int i = 0; i < kLanes; ++i) {
     // Off the camera's axis a pixel is narrower, as seen from the eye, by up to the square of the stretch.
-    const double half_angle = 0.5 * pixel / (stretch[i] * stretch[i]);
+    const double half_angle = kHalf * pixel / (stretch[i] * stretch[i]);
     const double sum = mirrored.wave_sum[i], product = mirrored.wave_product[i];
-    const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product)), width = half_angle * mirrored.distance[i];
+    const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product)),
+                 width = half_angle * mirrored.distance[i];
     const double k1 = 0.5 * (sum - root), k2 = 0.5 * (sum + root), way = rays.t_max[i];
     half_pixel[i] = meets_nothing(rays, i)
                         ? float(width * std::min(std::abs(k1), std::abs(k2)))
@@ -73,7 +78,7 @@ void set_half_pixels(const BeamLanes& beams, const optics::RayPacket16& rays, fl
     }
     const glm::dvec3 d = beams.direction.at(i);
     half_pixel[i] =
-        float(0.5 * least_singular_value(right - glm::dot(right, d) * d, down - glm::dot(down, d) * d));
+        float(kHalf * least_singular_value(right - glm::dot(right, d) * d, down - glm::dot(down, d) * d));
   }
 }
 

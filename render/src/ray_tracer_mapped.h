@@ -29,14 +29,16 @@ struct MapLanes {
   glm::vec3 shown[kLanes];  ///< see MapColor
 };
 
-/// Asks for the colours of what `rays` (unit directions) have met, in lanes whose `optic` is one, by its maps.
-/// Hits on other optics, numbers from `first_optic` on, are not in question: what those show depends on the
-/// eye. `before_mm`: where the rays start behind the optic. `half_pixel`: see MapQuery.
-void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays, const int (&optic)[MapLanes::kLanes],
-                  std::uint32_t first_optic, float before_mm, const float (&half_pixel)[MapLanes::kLanes],
-                  MapLanes& lanes);
+/// Asks for the colours of what `rays` (unit directions) have met, in lanes whose `optic` is one, by its
+/// maps. Hits on other optics, numbers from `first_optic` on, are not in question: what those show depends on
+/// the eye. `before_mm`: where the rays start behind the optic. `half_pixel`: see MapQuery.
+void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays,
+                  const int (&optic)[MapLanes::kLanes], std::uint32_t first_optic, float before_mm,
+                  const float (&half_pixel)[MapLanes::kLanes], MapLanes& lanes);
 
-/// Half the least width of each pixel's beam at the hits, mm; behind rays that meet nothing its angle, rad.
+/// Half the least width of each pixel's beam at the hits, mm, less a fifth; behind rays that meet nothing its
+/// angle, rad. The fifth: from one pixel to the next the beam's width is another, and pictures can only be
+/// judged by such steps.
 /// `pixel`: see CameraRays. A beam has its principal widths at right angles: 1 + t k times those at the
 /// mirror, k the wavefront's principal curvatures.
 void set_half_pixels(const MirrorRays& mirrored, const optics::RayPacket16& rays, double pixel,

@@ -303,7 +303,8 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       set_half_pixels(out.beams, out.rays, half_pixel);
       int optic[kLanes];
       for (int i = 0; i < kLanes; ++i) optic[i] = out.passed[i] ? p.lens.optic[i] : -1;
-      find_in_maps(*maps, out.rays, optic, first_optic, float(optics::kSelfHitDistance_mm), half_pixel, found);
+      find_in_maps(*maps, out.rays, optic, first_optic, float(optics::kSelfHitDistance_mm), half_pixel,
+                   found);
       for (int i = 0; i < kLanes; ++i) {
         out.shade.active[i] = out.passed[i] && !found.found[i];
         p.traced[i] = p.traced[i] || (found.asked[i] && !found.found[i]);
@@ -355,7 +356,8 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
     write_shown(pixels, p.found, frame);
   }
   std::size_t rays = 0;
-  if (p.lens.any) rays += refract(view, pixels, mapped ? &mapped->maps : nullptr, p, geometry ? &frame : nullptr);
+  if (p.lens.any)
+    rays += refract(view, pixels, mapped ? &mapped->maps : nullptr, p, geometry ? &frame : nullptr);
   for (int i = 0; i < kLanes; ++i) {
     const bool mirrored = p.optic[i] >= 0;
     if (p.lens.any && p.lens.optic[i] >= 0) {

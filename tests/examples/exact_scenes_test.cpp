@@ -1,4 +1,5 @@
-// Mode exact over every example scene: what it shows is what exact rays show, and it traces few pixels for that.
+// Mode exact over every example scene: what it shows is what exact rays show, and it traces few pixels for
+// that.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +28,8 @@ std::vector<std::filesystem::path> scenes_with_optics() {
     if (entry.path().extension() != ".toml") continue;
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
-    if (text.str().find("[[mirror]]") != std::string::npos || text.str().find("[[lens]]") != std::string::npos)
+    if (text.str().find("[[mirror]]") != std::string::npos ||
+        text.str().find("[[lens]]") != std::string::npos)
       files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -1,5 +1,5 @@
-// How many of an optic's pixels a picture of mode exact shows wrong, against mode raytrace: by the geometry that both
-// show, and by colour, which asks nothing of what a mode says of itself.
+// How many of an optic's pixels a picture of mode exact shows wrong, against mode raytrace: by the geometry
+// that both show, and by colour, which asks nothing of what a mode says of itself.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 namespace catoptra::test {
 
 struct ExactJudgement {
-  std::size_t pixels = 0;    ///< of the optic, in either picture
-  std::size_t retraced = 0;  ///< as the mode counts them
-  std::size_t other = 0;     ///< one picture shows the optic and the other does not
-  std::size_t turned = 0;    ///< off by more than 1 arcmin and more than half a pixel
-  std::size_t elsewhere = 0; ///< another thing along the ray than is met in the pixel or beside it
+  std::size_t pixels = 0;      ///< of the optic, in either picture
+  std::size_t retraced = 0;    ///< as the mode counts them
+  std::size_t other = 0;       ///< one picture shows the optic and the other does not
+  std::size_t turned = 0;      ///< off by more than 1 arcmin and more than half a pixel
+  std::size_t elsewhere = 0;   ///< another thing along the ray than is met in the pixel or beside it
   std::size_t discolored = 0;  ///< a colour that is not between those of the pixel and the ones beside it
 
   [[nodiscard]] double share(std::size_t count) const { return pixels ? double(count) / double(pixels) : 0; }
@@ -29,7 +29,8 @@ struct ExactJudgement {
   [[nodiscard]] double retraced_share() const { return share(retraced); }
 };
 
-/// Beside the rounding of coordinates, a surface that the ray meets at a grazing angle is another mm farther on.
+/// Beside the rounding of coordinates, a surface that the ray meets at a grazing angle is another mm farther
+/// on.
 inline constexpr double kJudgedDepth = 0.01;
 /// What mips, made along other derivatives in map and ray tracer, may change beyond the range of nine pixels.
 inline constexpr float kJudgedColor = 0.03f;
@@ -50,8 +51,7 @@ inline bool turned(const render::Frame& reference, const render::Frame& frame, s
   const auto direction = render::shown_direction(reference, frame, i);
   if (!direction) return true;
   constexpr double kRounding = 1.001;
-  const double arcmin =
-      render::kArcminPerRad * render::angle(*direction, glm::dvec3(reference.direction[i]));
+  const double arcmin = render::kArcminPerRad * render::angle(*direction, glm::dvec3(reference.direction[i]));
   if (arcmin <= kRounding * render::kExactTolerance_arcmin) return false;
   const auto px = render::screen_error(reference, frame, i, *direction);
   return !px || *px > kRounding * render::kExactTolerance_px;
@@ -83,7 +83,8 @@ inline bool discolored(const render::Frame& reference, const render::Frame& fram
     most = glm::max(most, shown(reference.color[k]));
   });
   const glm::vec3 c = shown(frame.color[i]);
-  return glm::any(glm::lessThan(c, least - kJudgedColor)) || glm::any(glm::greaterThan(c, most + kJudgedColor));
+  return glm::any(glm::lessThan(c, least - kJudgedColor)) ||
+         glm::any(glm::greaterThan(c, most + kJudgedColor));
 }
 
 }  // namespace judgement
