@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "render/src/raster_target.h"
@@ -14,20 +12,24 @@
 
 namespace catoptra::render {
 
-/// What an exact ray meets behind an optic.
-struct MapQuery {
-  glm::vec3 point_mm{0};   ///< of the surroundings; unused for the sky
-  glm::vec3 direction{0};  ///< of the ray, unit
-  glm::vec3 normal{0};     ///< unit, of the triangle met, either sense
-  float distance_mm = 0;   ///< along the ray from the optic to the point
-  float half_pixel = 0;    ///< half the least width of the pixel's beam there, mm; of the sky, rad
-  bool sky = false;
+/// What 16 exact rays meet behind an optic. Structure of arrays.
+struct alignas(64) MapQueries {
+  static constexpr int kLanes = 16;
+  float point_x[kLanes], point_y[kLanes], point_z[kLanes];  ///< mm; of the sky the direction
+  float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< of the ray, unit
+  float normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];  ///< of the triangle met, of any length
+  float distance[kLanes];    ///< along the ray from the optic to the point, mm; of the sky 1
+  float half_pixel[kLanes];  ///< half the least width of the pixel's beam there, mm; of the sky, rad
+  std::int32_t sky[kLanes];     ///< 1: the ray meets nothing
+  std::int32_t wanted[kLanes];  ///< 1: the lane is in question; find() sets 0 where it has an answer
 };
 
-struct MapColor {
-  glm::vec3 radiance{0};
-  glm::vec3 shown{0};  ///< the place (or, of the sky, the unit direction) whose colour it is; within the
-                       ///< tolerance of pixel_error.h
+struct alignas(64) MapAnswers {
+  static constexpr int kLanes = MapQueries::kLanes;
+  std::int32_t found[kLanes];               ///< 1: the rest is set
+  float red[kLanes], green[kLanes], blue[kLanes];  ///< radiance
+  /// The place (or, of the sky, the unit direction) whose colour it is, within the tolerance of pixel_error.h.
+  float shown_x[kLanes], shown_y[kLanes], shown_z[kLanes];
 };
 
 /// Copies of maps on the CPU, any number per optic.
@@ -38,33 +40,30 @@ class MapColors {
   /// Adds what `target` shows, which was drawn as `view` (sample offset included).
   void add(std::size_t optic, const RasterView& view, const RasterTarget& target);
 
-  /// The colour of what the ray meets, where a map of `optic` has seen it: where at least one of the four
-  /// texels around its place lies in the plane of the triangle met and is seen from the same side. Others,
-  /// which show what stands before or behind it, do not count. Where that moves the place of the colour by
-  /// more than 1 arcmin and more than half a pixel, and where no texel shows it: nullopt.
-  [[nodiscard]] std::optional<MapColor> find(std::size_t optic, const MapQuery& query) const;
+  /// The colours of what the rays meet, where a map of `optic` has seen it: where at least one of the four
+  /// texels around its place lies in the plane of the triangle met and is seen from the same side, or both are
+  /// sky. Others, which show what stands before or behind it, do not count. No answer where that moves the
+  /// place of the colour by more than 1 arcmin and more than half a pixel, where no texel shows it, and where
+  /// the map is too coarse for the pixel.
+  void find(std::size_t optic, MapQueries& queries, MapAnswers& answers) const;
 
  private:
   struct Map {
-    glm::dvec3 origin_mm;
-    glm::vec3 right, up, ahead;
+    glm::vec3 origin_mm, right, up, ahead;
     bool perspective;
     float scale_x, scale_y, shift_x, shift_y;  ///< texel = scale * slope + shift, slope = (right, up) / depth
-    float depth_factor, depth_shift;
+    float depth_factor, depth_shift;           ///< depth = factor / (stored - shift); parallel: factor * (...)
     glm::ivec2 size;
     std::size_t first;  ///< index of its first texel
-
-    [[nodiscard]] float depth_mm(float stored) const;
   };
-  struct Texels;
+  struct Places;
 
-  [[nodiscard]] std::optional<Texels> texels_at(const Map& map, glm::vec3 place) const;
-  [[nodiscard]] std::optional<MapColor> find_point(const Map& map, const MapQuery& query) const;
-  [[nodiscard]] std::optional<MapColor> find_sky(const Map& map, const MapQuery& query) const;
-  [[nodiscard]] glm::vec3 mean(const Texels& texels) const;
+  static void find_places(const Map& map, const MapQueries& q, Places& p);
+  static void judge(const Map& map, const MapQueries& q, Places& p, MapAnswers& answers);
+  static void mix(const Places& p, MapAnswers& answers);
 
   std::vector<std::vector<Map>> maps_;  ///< by optic
-  std::vector<std::uint16_t> colors_;   ///< RGBA, half precision
+  std::vector<std::uint64_t> colors_;   ///< RGBA, half precision, red in the lowest bits
   std::vector<float> depths_;           ///< reversed; 0: the sky
 };
 

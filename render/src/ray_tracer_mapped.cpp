@@ -16,17 +16,25 @@ bool meets_nothing(const optics::RayPacket16& rays, int i) {
   return rays.object[i] == optics::kNoHit;
 }
 
-MapQuery query_of(const optics::RayPacket16& rays, int i, float before_mm, float half_pixel) {
-  MapQuery query;
-  query.sky = meets_nothing(rays, i);
-  query.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
-  query.half_pixel = half_pixel;
-  if (query.sky) return query;
-  query.point_mm =
-      glm::vec3(rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]) + rays.t_max[i] * query.direction;
-  query.normal = glm::normalize(glm::vec3(rays.normal_x[i], rays.normal_y[i], rays.normal_z[i]));
-  query.distance_mm = before_mm + rays.t_max[i];
-  return query;
+MapQueries queries_of(const optics::RayPacket16& rays, float before_mm, const float (&half_pixel)[kLanes]) {
+  MapQueries q;
+  for (int i = 0; i < kLanes; ++i) {
+    const bool sky = meets_nothing(rays, i);
+    const float x = rays.direction_x[i], y = rays.direction_y[i], z = rays.direction_z[i], way = rays.t_max[i];
+    q.sky[i] = sky;
+    q.direction_x[i] = x;
+    q.direction_y[i] = y;
+    q.direction_z[i] = z;
+    q.point_x[i] = sky ? x : rays.origin_x[i] + way * x;
+    q.point_y[i] = sky ? y : rays.origin_y[i] + way * y;
+    q.point_z[i] = sky ? z : rays.origin_z[i] + way * z;
+    q.normal_x[i] = rays.normal_x[i];
+    q.normal_y[i] = rays.normal_y[i];
+    q.normal_z[i] = rays.normal_z[i];
+    q.distance[i] = sky ? 1 : before_mm + way;
+    q.half_pixel[i] = half_pixel[i];
+  }
+  return q;
 }
 
 /// The less of the two singular values of a matrix with these columns, whose directions are across a ray.
@@ -42,15 +50,21 @@ double least_singular_value(const glm::dvec3& x, const glm::dvec3& y) {
 void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays, const int (&optic)[kLanes],
                   std::uint32_t first_optic, float before_mm, const float (&half_pixel)[kLanes],
                   MapLanes& lanes) {
+  MapQueries queries = queries_of(rays, before_mm, half_pixel);
+  std::fill(std::begin(lanes.answers.found), std::end(lanes.answers.found), 0);
+  bool waiting[kLanes];
   for (int i = 0; i < kLanes; ++i) {
     lanes.asked[i] = optic[i] >= 0;
-    lanes.found[i] = false;
-    if (!lanes.asked[i] || (!meets_nothing(rays, i) && rays.object[i] >= first_optic)) continue;
-    const auto color = maps.find(std::size_t(optic[i]), query_of(rays, i, before_mm, half_pixel[i]));
-    lanes.found[i] = color.has_value();
-    if (!color) continue;
-    lanes.radiance[i] = Float4{color->radiance.r, color->radiance.g, color->radiance.b, 0};
-    lanes.shown[i] = color->shown;
+    waiting[i] = lanes.asked[i] && (meets_nothing(rays, i) || rays.object[i] < first_optic);
+  }
+  for (int first = 0; first < kLanes; ++first) {
+    if (!waiting[first]) continue;
+    for (int i = 0; i < kLanes; ++i) {
+      const bool now = waiting[i] && optic[i] == optic[first];
+      queries.wanted[i] = now;
+      if (now) waiting[i] = false;
+    }
+    maps.find(std::size_t(optic[first]), queries, lanes.answers);
   }
 }
 

@@ -24,14 +24,21 @@ struct MappedSample {
 /// What maps know of the hits of 16 rays.
 struct MapLanes {
   static constexpr int kLanes = ShadeLanes::kLanes;
-  bool asked[kLanes] = {}, found[kLanes] = {};
-  Float4 radiance[kLanes];
-  glm::vec3 shown[kLanes];  ///< see MapColor
+  bool asked[kLanes] = {};
+  MapAnswers answers{};
+
+  [[nodiscard]] bool found(int lane) const { return answers.found[lane] != 0; }
+  [[nodiscard]] Float4 radiance(int lane) const {
+    return Float4{answers.red[lane], answers.green[lane], answers.blue[lane], 0};
+  }
+  [[nodiscard]] glm::vec3 shown(int lane) const {
+    return {answers.shown_x[lane], answers.shown_y[lane], answers.shown_z[lane]};
+  }
 };
 
 /// Asks for the colours of what `rays` (unit directions) have met, in lanes whose `optic` is one, by its
 /// maps. Hits on other optics, numbers from `first_optic` on, are not in question: what those show depends on
-/// the eye. `before_mm`: where the rays start behind the optic. `half_pixel`: see MapQuery.
+/// the eye. `before_mm`: where the rays start behind the optic. `half_pixel`: see MapQueries.
 void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays,
                   const int (&optic)[MapLanes::kLanes], std::uint32_t first_optic, float before_mm,
                   const float (&half_pixel)[MapLanes::kLanes], MapLanes& lanes);

@@ -95,9 +95,9 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
 /// Where colours come from maps, what these show.
 void write_shown(const PixelPacket& pixels, const MapLanes& found, Frame& frame) {
   for (int i = 0; i < kLanes; ++i) {
-    if (!pixels.active[i] || !found.found[i]) continue;
+    if (!pixels.active[i] || !found.found(i)) continue;
     glm::vec4& position = frame.position[index_of(pixels, i, frame)];
-    position = glm::vec4(found.shown[i], position.w);
+    position = glm::vec4(found.shown(i), position.w);
   }
 }
 
@@ -306,13 +306,13 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       find_in_maps(*maps, out.rays, optic, first_optic, float(optics::kSelfHitDistance_mm), half_pixel,
                    found);
       for (int i = 0; i < kLanes; ++i) {
-        out.shade.active[i] = out.passed[i] && !found.found[i];
-        p.traced[i] = p.traced[i] || (found.asked[i] && !found.found[i]);
+        out.shade.active[i] = out.passed[i] && !found.found(i);
+        p.traced[i] = p.traced[i] || (found.asked[i] && !found.found(i));
       }
     }
     shading_.shade(out.shade);
     for (int i = 0; i < kLanes; ++i)
-      if (found.found[i]) out.shade.radiance[i] = found.radiance[i];
+      if (found.found(i)) out.shade.radiance[i] = found.radiance(i);
     lenses_.add_colors(sample, out, p.lens);
     if (sample == 0 && geometry) {
       write_lens_geometry(pixels, p.lens, out, *geometry);
@@ -329,8 +329,8 @@ void PacketTracer::take_mirrored_colors(const CameraRays& camera, const MapColor
   find_in_maps(maps, p.second, p.optic, static_cast<std::uint32_t>(scene_.surroundings.size()), 0, half_pixel,
                p.found);
   for (int i = 0; i < kLanes; ++i) {
-    p.shade.active[i] = p.shade.active[i] && !p.found.found[i];
-    p.traced[i] = p.found.asked[i] && !p.found.found[i];
+    p.shade.active[i] = p.shade.active[i] && !p.found.found(i);
+    p.traced[i] = p.found.asked[i] && !p.found.found(i);
   }
 }
 
@@ -342,14 +342,14 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
   const CameraRays& camera = view.camera;
   std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   std::fill(std::begin(p.traced), std::end(p.traced), false);
-  std::fill(std::begin(p.found.found), std::end(p.found.found), false);
+  std::fill(std::begin(p.found.answers.found), std::end(p.found.answers.found), 0);
   primary(view, pixels, sample_offset(sample, std::max(1, options.samples)), p);
   reflect(camera, p);
   set_hits(camera, p);
   if (mapped && p.any_mirror) take_mirrored_colors(camera, mapped->maps, p);
   shading_.shade(p.shade);
   for (int i = 0; i < kLanes; ++i)
-    if (p.found.found[i]) p.shade.radiance[i] = p.found.radiance[i];
+    if (p.found.found(i)) p.shade.radiance[i] = p.found.radiance(i);
   const bool geometry = sample == 0 && options.geometry;
   if (geometry) {
     write_geometry(camera, pixels, p, frame);
