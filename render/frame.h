@@ -25,7 +25,7 @@ struct Frame {
   std::vector<glm::vec3> direction;    ///< unit outgoing direction of the exact ray where the mode knows it
   std::vector<std::int32_t> optic_id;  ///< index in Scene::optics; -1: no optic
 
-  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where the pixel was found wrong and traced
+  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where an optic shows what no map knows and was traced
 };
 
 struct PatchStats {
@@ -48,7 +48,7 @@ struct OpticStats {
   std::size_t shown_pixels = 0, retraced_pixels = 0;
 };
 
-/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "retrace", "readback",
+/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;
