@@ -27,7 +27,7 @@ struct Frame {
   std::vector<std::uint8_t> bounces;   ///< optics along the path; empty: 1 wherever an optic shows
   std::vector<std::uint32_t> path;     ///< which ones, in order: see path_after(); empty: optic_id alone
 
-  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where the pixel was found wrong and traced
+  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where an optic shows what no map knows and was traced
 };
 
 /// The number of a path that goes on by optic `optic` after the path numbered `path`; 0 is a path without
@@ -62,7 +62,7 @@ struct OpticStats {
   std::size_t shown_pixels = 0, retraced_pixels = 0;
 };
 
-/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "retrace", "readback",
+/// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;

@@ -69,6 +69,7 @@ ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
   return {{"frames", timing.frames},
           {"frame_ms", {{"min", *least}, {"median", timing.median_ms()}, {"max", *most}}},
           {"rays_per_frame", timing.rays_per_frame},
+          {"vertices", timing.vertices},
           {"speedup_vs_raytrace", raytrace_ms / timing.median_ms()},
           {"time_ms", pass_json(timing)}};
 }
@@ -152,13 +153,14 @@ void print_table(const ordered_json& report) {
   std::printf("%s: %d x %d, %zu triangles\n", report["scene"].get<std::string>().c_str(),
               report["resolution"][0].get<int>(), report["resolution"][1].get<int>(),
               report["triangles"].get<std::size_t>());
-  std::printf("%-11s %7s %9s %9s %9s %11s %8s  %s\n", "mode", "frames", "min ms", "median", "max", "rays",
-              "speed-up", "passes (median ms)");
+  std::printf("%-11s %7s %9s %9s %9s %11s %8s %8s  %s\n", "mode", "frames", "min ms", "median", "max", "rays",
+              "vertices", "speed-up", "passes (median ms)");
   for (const auto& [name, mode] : report["modes"].items()) {
     const auto& frame = mode["frame_ms"];
-    std::printf("%-11s %7d %9.2f %9.2f %9.2f %11zu %8.2f ", name.c_str(), mode["frames"].get<int>(),
+    std::printf("%-11s %7d %9.2f %9.2f %9.2f %11zu %8zu %8.2f ", name.c_str(), mode["frames"].get<int>(),
                 frame["min"].get<double>(), frame["median"].get<double>(), frame["max"].get<double>(),
-                mode["rays_per_frame"].get<std::size_t>(), mode["speedup_vs_raytrace"].get<double>());
+                mode["rays_per_frame"].get<std::size_t>(), mode["vertices"].get<std::size_t>(),
+                mode["speedup_vs_raytrace"].get<double>());
     for (const auto& [pass_name, ms] : mode["time_ms"].items())
       std::printf(" %s %.3g", pass_name.c_str(), ms.get<double>());
     std::printf("\n");

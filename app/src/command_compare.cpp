@@ -29,7 +29,8 @@ struct CompareOptions {
 struct ModeResult {
   render::Mode mode;
   render::Comparison comparison;
-  std::vector<double> retraced;  ///< fraction of each optic's pixels
+  std::vector<std::size_t> vertices;  ///< of each optic's mesh as drawn
+  std::vector<double> retraced;       ///< fraction of each optic's pixels
   FrameTiming timing;
   nlohmann::ordered_json json;
 };
@@ -37,6 +38,15 @@ struct ModeResult {
 FrameTiming time_mode(Session& session, render::Mode mode, int frames) {
   return time_frames(session.renderer(), mode, session.scene().camera, session.frame, frames,
                      session.progress);
+}
+
+std::vector<std::size_t> drawn_vertices(const render::Scene& scene, const render::FrameStats& stats) {
+  std::vector<std::size_t> vertices;
+  for (std::size_t i = 0; i < scene.optics.size(); ++i) {
+    const bool told = i < stats.optics.size() && stats.optics[i].vertices > 0;
+    vertices.push_back(told ? stats.optics[i].vertices : scene.optics[i].mesh.vertices.size());
+  }
+  return vertices;
 }
 
 std::vector<double> retraced_fractions(const render::Scene& scene, render::Mode mode,
@@ -55,6 +65,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   const render::RenderResult result = session.render(mode, frame_options);
   ModeResult compared{mode,
                       render::compare(reference, result.frame, session.scene()),
+                      drawn_vertices(session.scene(), result.stats),
                       retraced_fractions(session.scene(), drawn_mode(mode, result), result.stats),
                       time_mode(session, mode, options.frames),
                       {}};
@@ -72,9 +83,14 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   return compared;
 }
 
-void print_row(const char* mode, const std::string& optic, const render::OpticError* error,
-               const double* retraced, const render::ImageError* image, double ms) {
+void print_row(const char* mode, const std::string& optic, std::size_t vertices,
+               const render::OpticError* error, const double* retraced, const render::ImageError* image,
+               double ms) {
   std::printf("%-9s %-20.20s", mode, optic.c_str());
+  if (vertices > 0)
+    std::printf(" %8zu", vertices);
+  else
+    std::printf(" %8s", "-");
   if (error)
     std::printf(" %8zu %9.4g %9.4g %9.4g %9.4g %8.3g", error->pixels, error->arcmin.median, error->arcmin.p99,
                 error->arcmin.p999, error->arcmin.max, error->screen_px.p99);
@@ -92,18 +108,19 @@ void print_row(const char* mode, const std::string& optic, const render::OpticEr
 }
 
 void print_table(const Session& session, const std::vector<ModeResult>& results, double raytrace_ms) {
-  std::printf("%-9s %-20s %8s %9s %9s %9s %9s %8s %9s %7s %7s %9s\n", "mode", "optic", "pixels", "median'",
-              "p99'", "p999'", "max'", "p99 px", "retr. %", "PSNR dB", "FLIP", "frame ms");
+  std::printf("%-9s %-20s %8s %8s %9s %9s %9s %9s %8s %9s %7s %7s %9s\n", "mode", "optic", "vertices",
+              "pixels", "median'", "p99'", "p999'", "max'", "p99 px", "retr. %", "PSNR dB", "FLIP",
+              "frame ms");
   for (const ModeResult& result : results) {
     const std::string name(render::mode_name(result.mode));
     const auto& optics = result.comparison.optics;
     if (optics.empty())
-      print_row(name.c_str(), "", nullptr, nullptr, &result.comparison.image, result.timing.median_ms());
+      print_row(name.c_str(), "", 0, nullptr, nullptr, &result.comparison.image, result.timing.median_ms());
     for (std::size_t i = 0; i < optics.size(); ++i)
-      print_row(name.c_str(), session.scene().optics[i].name, &optics[i], &result.retraced[i],
-                &result.comparison.image, result.timing.median_ms());
+      print_row(name.c_str(), session.scene().optics[i].name, result.vertices[i], &optics[i],
+                &result.retraced[i], &result.comparison.image, result.timing.median_ms());
   }
-  print_row("raytrace", "(the reference)", nullptr, nullptr, nullptr, raytrace_ms);
+  print_row("raytrace", "(the reference)", 0, nullptr, nullptr, nullptr, raytrace_ms);
   std::printf(
       "(' = arcmin at the optic between the exact direction and what is shown; retr.: share of the optic's "
       "pixels that are traced)\n");

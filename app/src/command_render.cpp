@@ -108,6 +108,10 @@ void check_overlay(const RenderOptions& options, render::Mode mode) {
     throw UsageError("overlay 'retraced' belongs to mode 'exact', and this is '" +
                          std::string(render::mode_name(mode)) + "'",
                      "add --mode exact");
+  // Its optics show what exact rays meet, not what the vertices' rays do.
+  if ((options.overlay == "vertices" || options.overlay == "rays") && mode == render::Mode::exact)
+    throw UsageError("overlay '" + options.overlay + "' belongs to mode 'pvrr', and this is 'exact'",
+                     "add --mode pvrr, or ask for --overlay retraced");
 }
 
 int run_render(const RenderOptions& options, const CommonOptions& common) {

@@ -41,6 +41,8 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
     timing.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     for (const auto& [name, ms] : result.stats.time_ms) timing.pass_ms[name].push_back(ms);
     timing.rays_per_frame = result.stats.rays;
+    timing.vertices = 0;
+    for (const render::OpticStats& optic : result.stats.optics) timing.vertices += optic.vertices;
     timing.choice = result.choice;
   }
   progress.clear();

@@ -1,5 +1,7 @@
 #include "render/src/exact_frame.h"
 
+#include <span>
+
 #include "render/src/sampling.h"
 
 namespace catoptra::render {
@@ -13,33 +15,43 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   double trace_ms = 0, pass1_ms = 0, pass2_ms = 0, verify_ms = 0, readback_ms = 0;
   const glm::ivec2 size(options.width, options.height);
   std::size_t rays = 0;
+  std::vector<std::uint8_t> marks;
   std::vector<std::uint32_t> pixels;
   std::vector<std::uint8_t> retraced(std::size_t(size.x) * std::size_t(size.y), 0);
   const double total_ms = gl_time_ms([&] {
-    trace_ms = gl_time_ms([&] {
+    pass2_ms = gl_time_ms([&] {
       picture.begin(options);
+      mask_.begin(size, &picture.target().depth());
+      for (int sample = 0; sample < options.samples; ++sample) {
+        RasterPass pass;
+        pass.geometry = options.geometry && sample == 0;
+        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
+        picture.target().bind(pass.geometry);
+        raster_.draw(view, pass);
+        mask_.draw(view);
+        picture.add_sample();
+      }
+      marks = mask_.marks();
+      pixels = marked_pixels(marks);
+      start_traced(options, pixels);
+    });
+    trace_ms = gl_time_ms([&] {
       FrameOptions without_geometry = options;
       without_geometry.geometry = false;
       pvrr_.update(camera, without_geometry);
-      pixels = pixels_of_optics(camera, options);
-      start_traced(options, pixels);
     });
     for (int sample = 0; sample < options.samples; ++sample) {
-      const glm::dvec2 offset = sample_offset(sample, options.samples);
       pass1_ms += gl_time_ms([&] {
-        pvrr_.draw_maps(offset, false, nullptr);
+        pvrr_.draw_maps(sample_offset(sample, options.samples), false, nullptr);
         pvrr_.copy_maps(maps_);
       });
-      RasterPass pass;
-      pass.geometry = options.geometry && sample == 0;
-      picture.target().bind(pass.geometry);
-      raster_.draw(camera_view(camera, size, offset), pass);
-      picture.add_sample();
-      glFlush();  // that goes on while rays are traced
-      const auto traced_ms = gl_time_ms([&] {
-        rays += tracer.trace_mapped(camera, options, pixels, {maps_, sample, retraced, owner_}, traced_);
+      verify_ms += gl_time_ms([&] {
+        // Which samples of a pixel the mask has is known of a single one alone.
+        const MappedSample mapped{maps_, sample,
+                                  options.samples == 1 ? std::span(marks) : std::span<const std::uint8_t>(),
+                                  retraced, owner_};
+        rays += tracer.trace_mapped(camera, options, pixels, mapped, traced_);
       });
-      verify_ms += traced_ms;
     }
     readback_ms = gl_time_ms([&] {
       result.frame = picture.read_back();
@@ -58,18 +70,6 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   result.stats.time_ms = {{"trace", trace_ms},   {"pass1", pass1_ms},       {"pass2", pass2_ms},
                           {"verify", verify_ms}, {"readback", readback_ms}, {"total", total_ms}};
   return result;
-}
-
-/// In any sample. Hidden optics too: the ray tracer knows what hides them.
-std::vector<std::uint32_t> ExactFrame::pixels_of_optics(const Camera& camera, const FrameOptions& options) {
-  const glm::ivec2 size(options.width, options.height);
-  mask_.begin(size, nullptr);
-  for (int sample = 0; sample < options.samples; ++sample) {
-    const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
-    raster_.begin_view(view, 0);
-    mask_.draw(view);
-  }
-  return mask_.pixels();
 }
 
 void ExactFrame::start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels) {

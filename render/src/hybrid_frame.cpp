@@ -28,7 +28,7 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
     std::vector<std::uint32_t> pixels;
     readback_ms = gl_time_ms([&] {
       result.frame = picture.read_back();
-      pixels = mask_.pixels();
+      pixels = marked_pixels(mask_.marks());
     });
     trace_ms =
         gl_time_ms([&] { result.stats.rays = tracer.trace_pixels(camera, options, pixels, result.frame); });

@@ -26,6 +26,10 @@ constexpr float kPixelsPerHalf = float(1 / kExactTolerance_px);
 
 static_assert(std::endian::native == std::endian::little, "a texel's red is to be in the lowest bits");
 
+[[gnu::always_inline]] inline float larger(float a, float b) {
+  return a > b ? a : b;
+}
+
 /// Half precision as a float, exactly. Finite numbers that are not negative.
 [[gnu::always_inline]] inline float from_half(std::uint32_t half) {
   return std::bit_cast<float>((half & 0x7fffu) << 13) * 0x1p112f;
@@ -44,6 +48,7 @@ struct alignas(64) MapColors::Places {
   std::uint32_t index[4][kLanes];            ///< within the map
   float depth[4][kLanes];                    ///< as stored
   std::uint64_t color[4][kLanes];
+  float column[kLanes], row[kLanes];  ///< in texels, centres at halves
   std::int32_t possible[kLanes];
 };
 
@@ -109,31 +114,33 @@ void MapColors::find(std::size_t optic, MapQueries& queries, MapAnswers& answers
   }
 }
 
-CATOPTRA_VECTOR_CLONES void MapColors::find_places(const Map& map, const MapQueries& q, Places& p) {
-  const glm::vec3 o = map.origin_mm, r = map.right, u = map.up, a = map.ahead;
-  const bool perspective = map.perspective;
-  const int last_x = map.size.x - 1, last_y = map.size.y - 1, width = map.size.x;
-  const float wide = float(map.size.x), high = float(map.size.y);
+template <bool kPerspective>
+[[gnu::always_inline]] inline void MapColors::find_places_in(const Map& map, const MapQueries& q, Places& p) {
+  const Map m = map;  // a copy, so that no store can be thought to change it
+  const float wide = float(m.size.x), high = float(m.size.y);
   for (int i = 0; i < kLanes; ++i) {
     const bool sky = q.sky[i] != 0;
-    const float dx = sky ? q.point_x[i] : q.point_x[i] - o.x, dy = sky ? q.point_y[i] : q.point_y[i] - o.y,
-                dz = sky ? q.point_z[i] : q.point_z[i] - o.z;
-    const float x = dx * r.x + dy * r.y + dz * r.z, y = dx * u.x + dy * u.y + dz * u.z,
-                z = dx * a.x + dy * a.y + dz * a.z;
+    const float from = sky ? 0.0f : 1.0f;
+    const float dx = q.point_x[i] - from * m.origin_mm.x, dy = q.point_y[i] - from * m.origin_mm.y,
+                dz = q.point_z[i] - from * m.origin_mm.z;
+    const float x = dx * m.right.x + dy * m.right.y + dz * m.right.z,
+                y = dx * m.up.x + dy * m.up.y + dz * m.up.z,
+                z = dx * m.ahead.x + dy * m.ahead.y + dz * m.ahead.z;
     const float gx = q.normal_x[i], gy = q.normal_y[i], gz = q.normal_z[i];
     const float per_length = 1 / std::sqrt(gx * gx + gy * gy + gz * gz);
-    const float nx = (gx * r.x + gy * r.y + gz * r.z) * per_length,
-                ny = (gx * u.x + gy * u.y + gz * u.z) * per_length,
-                nz = (gx * a.x + gy * a.y + gz * a.z) * per_length;
+    const float nx = (gx * m.right.x + gy * m.right.y + gz * m.right.z) * per_length,
+                ny = (gx * m.up.x + gy * m.up.y + gz * m.up.z) * per_length,
+                nz = (gx * m.ahead.x + gy * m.ahead.y + gz * m.ahead.z) * per_length;
     const float height = nx * x + ny * y + nz * z;
     const float facing = gx * q.direction_x[i] + gy * q.direction_y[i] + gz * q.direction_z[i];
-    const float per_depth = perspective ? 1 / z : 1.0f;
-    const float at_x = x * per_depth, at_y = y * per_depth;
-    const float column = map.scale_x * at_x + map.shift_x, row = map.scale_y * at_y + map.shift_y;
+    const float per_depth = kPerspective ? 1 / z : 1.0f;
+    const float column = m.scale_x * (x * per_depth) + m.shift_x,
+                row = m.scale_y * (y * per_depth) + m.shift_y;
     // The map has to see the side that the ray meets. A parallel map shows the sky of one direction.
-    const bool seen = sky ? perspective : (perspective ? height : nz) * facing > 0;
-    const bool inside = column >= 0 && row >= 0 && column <= wide && row <= high;
-    const bool possible = q.wanted[i] != 0 && (!perspective || z > 0) && seen && inside;
+    const float side = (kPerspective ? height : nz) * facing;
+    const int seen = sky ? int(kPerspective) : int(side > 0);
+    const int possible = int(q.wanted[i] != 0) & seen & int(!kPerspective || z > 0) & int(column >= 0) &
+                         int(row >= 0) & int(column <= wide) & int(row <= high);
     p.x[i] = x;
     p.y[i] = y;
     p.z[i] = z;
@@ -141,81 +148,104 @@ CATOPTRA_VECTOR_CLONES void MapColors::find_places(const Map& map, const MapQuer
     p.ny[i] = ny;
     p.nz[i] = nz;
     p.height[i] = height;
-    p.at_x[i] = at_x;
-    p.at_y[i] = at_y;
+    p.at_x[i] = x * per_depth;
+    p.at_y[i] = y * per_depth;
     p.possible[i] = possible;
-    const float from_left = possible ? column : 0.0f, from_top = possible ? row : 0.0f;
-    const int left = int(from_left + 0.5f) - 1, top = int(from_top + 0.5f) - 1;
-    const float right = from_left - (float(left) + 0.5f), down = from_top - (float(top) + 0.5f);
-    for (int k = 0; k < 4; ++k) {
-      const int cx = left + k % 2, cy = top + k / 2;
-      const bool in_map = cx >= 0 && cy >= 0 && cx <= last_x && cy <= last_y;
-      const int bx = std::min(std::max(cx, 0), last_x), by = std::min(std::max(cy, 0), last_y);
+    p.column[i] = possible ? column : 0.0f;
+    p.row[i] = possible ? row : 0.0f;
+  }
+  const int last_x = m.size.x - 1, last_y = m.size.y - 1, width = m.size.x;
+  for (int k = 0; k < 4; ++k) {
+    const int right = k % 2, down = k / 2;
+    for (int i = 0; i < kLanes; ++i) {
+      const int cx = int(p.column[i] + 0.5f) - 1 + right, cy = int(p.row[i] + 0.5f) - 1 + down;
+      const int bx = cx < 0 ? 0 : cx > last_x ? last_x : cx, by = cy < 0 ? 0 : cy > last_y ? last_y : cy;
+      const float off_x = float(cx) + 0.5f - p.column[i], off_y = float(cy) + 0.5f - p.row[i];
+      const float weight = (1 - std::abs(off_x)) * (1 - std::abs(off_y));
       p.index[k][i] = std::uint32_t(by * width + bx);
-      p.off_x[k][i] = float(k % 2) - right;
-      p.off_y[k][i] = float(k / 2) - down;
-      p.weight[k][i] = in_map ? (k % 2 ? right : 1 - right) * (k / 2 ? down : 1 - down) : 0.0f;
+      p.off_x[k][i] = off_x;
+      p.off_y[k][i] = off_y;
+      p.weight[k][i] = (bx == cx) & (by == cy) ? weight : 0.0f;
     }
   }
 }
 
-/// Leaves weights to the texels that show what the ray meets. The colour is their mean, so its place is the mean of
-/// theirs.
-CATOPTRA_VECTOR_CLONES void MapColors::judge(const Map& map, const MapQueries& q, Places& p,
-                                             MapAnswers& answers) {
-  const bool perspective = map.perspective;
-  const float per_x = 1 / map.scale_x, per_y = 1 / map.scale_y;
-  const glm::vec3 r = map.right, u = map.up, a = map.ahead;
+CATOPTRA_VECTOR_CLONES void MapColors::find_places(const Map& map, const MapQueries& q, Places& p) {
+  if (map.perspective)
+    find_places_in<true>(map, q, p);
+  else
+    find_places_in<false>(map, q, p);
+}
+
+/// Leaves weights to the texels that show what the ray meets. The colour is their mean, so its place is the
+/// mean of theirs.
+template <bool kPerspective>
+[[gnu::always_inline]] inline void MapColors::judge_in(const Map& map, const MapQueries& q, Places& p,
+                                                       MapAnswers& answers) {
+  const Map m = map;
+  const float per_x = 1 / m.scale_x, per_y = 1 / m.scale_y;
+  alignas(64) float sum[kLanes] = {}, moved_x[kLanes] = {}, moved_y[kLanes] = {}, moved_z[kLanes] = {};
+  for (int k = 0; k < 4; ++k)
+    for (int i = 0; i < kLanes; ++i) {
+      const bool sky = q.sky[i] != 0;
+      const float shifted = p.depth[k][i] - m.depth_shift, x = p.x[i], y = p.y[i], z = p.z[i];
+      const float met = kPerspective ? m.depth_factor / shifted : m.depth_factor * shifted;
+      const float depth = sky ? z : met, lateral = kPerspective ? depth : 1.0f;
+      const float sx = lateral * (p.at_x[i] + p.off_x[k][i] * per_x),
+                  sy = lateral * (p.at_y[i] + p.off_y[k][i] * per_y);
+      const float out = std::abs(p.nx[i] * sx + p.ny[i] * sy + p.nz[i] * depth - p.height[i]);
+      const float size = larger(larger(std::abs(q.point_x[i]), std::abs(q.point_y[i])),
+                                larger(std::abs(q.point_z[i]), std::abs(z)));
+      const float allowed = kTolerance_rad * q.distance[i] + kRounding * size;
+      const int nothing = p.depth[k][i] == 0, in_plane = out <= allowed;
+      const int same = sky ? nothing : (1 - nothing) & in_plane;
+      const float before = p.weight[k][i], weight = same ? before : 0.0f;
+      // Numbers that mean nothing times 0 need not be 0.
+      const float by_x = same ? sx - x : 0.0f, by_y = same ? sy - y : 0.0f, by_z = same ? depth - z : 0.0f;
+      p.weight[k][i] = weight;
+      sum[i] += weight;
+      moved_x[i] += weight * by_x;
+      moved_y[i] += weight * by_y;
+      moved_z[i] += weight * by_z;
+    }
+  alignas(64) float per_sums[kLanes];
+  for (int i = 0; i < kLanes; ++i) per_sums[i] = 1 / larger(sum[i], kLeastWeight);
+  for (int k = 0; k < 4; ++k)
+    for (int i = 0; i < kLanes; ++i) p.weight[k][i] *= per_sums[i];
   for (int i = 0; i < kLanes; ++i) {
     const bool sky = q.sky[i] != 0;
-    const float x = p.x[i], y = p.y[i], z = p.z[i], distance = q.distance[i];
-    const float largest = std::max(std::max(std::abs(q.point_x[i]), std::abs(q.point_y[i])),
-                                   std::max(std::abs(q.point_z[i]), std::abs(z)));
-    const float allowed = kTolerance_rad * distance + kRounding * largest;
-    float sum = 0, moved_x = 0, moved_y = 0, moved_z = 0;
-    for (int k = 0; k < 4; ++k) {
-      const float side_x = p.at_x[i] + p.off_x[k][i] * per_x, side_y = p.at_y[i] + p.off_y[k][i] * per_y;
-      const float stored = p.depth[k][i], shifted = stored - map.depth_shift;
-      const float met = perspective ? map.depth_factor / shifted : map.depth_factor * shifted;
-      const float depth = sky ? z : met, lateral = perspective ? depth : 1.0f;
-      const float sx = lateral * side_x, sy = lateral * side_y;
-      const float out = p.nx[i] * sx + p.ny[i] * sy + p.nz[i] * depth - p.height[i];
-      const bool same = sky ? stored == 0 : stored != 0 && std::abs(out) <= allowed;
-      const float weight = same ? p.weight[k][i] : 0.0f;
-      p.weight[k][i] = weight;
-      sum += weight;
-      moved_x += weight > 0 ? weight * (sx - x) : 0.0f;
-      moved_y += weight > 0 ? weight * (sy - y) : 0.0f;
-      moved_z += weight > 0 ? weight * (depth - z) : 0.0f;
-    }
-    const float per_sum = 1 / std::max(sum, kLeastWeight);
-    moved_x *= per_sum;
-    moved_y *= per_sum;
-    moved_z *= per_sum;
-    for (int k = 0; k < 4; ++k) p.weight[k][i] *= per_sum;
+    const float per_sum = per_sums[i];
+    const float mx = moved_x[i] * per_sum, my = moved_y[i] * per_sum, mz = moved_z[i] * per_sum;
     const float dx = q.direction_x[i], dy = q.direction_y[i], dz = q.direction_z[i];
-    const float d_right = dx * r.x + dy * r.y + dz * r.z, d_up = dx * u.x + dy * u.y + dz * u.z,
-                d_ahead = dx * a.x + dy * a.y + dz * a.z;
-    const float along = moved_x * d_right + moved_y * d_up + moved_z * d_ahead;
-    const float across_x = moved_x - along * d_right, across_y = moved_y - along * d_up,
-                across_z = moved_z - along * d_ahead;
-    const float across2 = across_x * across_x + across_y * across_y + across_z * across_z;
-    const float angle = kTolerance_rad * distance, limit = std::max(angle, q.half_pixel[i]);
+    const float d_right = dx * m.right.x + dy * m.right.y + dz * m.right.z,
+                d_up = dx * m.up.x + dy * m.up.y + dz * m.up.z,
+                d_ahead = dx * m.ahead.x + dy * m.ahead.y + dz * m.ahead.z;
+    const float along = mx * d_right + my * d_up + mz * d_ahead;
+    const float ax = mx - along * d_right, ay = my - along * d_up, az = mz - along * d_ahead;
+    const float across2 = ax * ax + ay * ay + az * az;
+    const float angle = kTolerance_rad * q.distance[i], limit = larger(angle, q.half_pixel[i]);
     // A texel's sides, across the ray.
-    const float side_x = std::abs(per_x) * std::sqrt(std::max(0.0f, 1 - d_right * d_right)),
-                side_y = std::abs(per_y) * std::sqrt(std::max(0.0f, 1 - d_up * d_up));
-    const float texel = (perspective ? z : 1.0f) * std::max(side_x, side_y);
-    answers.found[i] = p.possible[i] && sum >= kLeastWeight && across2 <= limit * limit &&
-                       texel <= kCoarsest * std::max(angle, kPixelsPerHalf * q.half_pixel[i]);
-    const float shown_x = q.point_x[i] + moved_x * r.x + moved_y * u.x + moved_z * a.x,
-                shown_y = q.point_y[i] + moved_x * r.y + moved_y * u.y + moved_z * a.y,
-                shown_z = q.point_z[i] + moved_x * r.z + moved_y * u.z + moved_z * a.z;
-    const float scale =
-        sky ? 1 / std::sqrt(shown_x * shown_x + shown_y * shown_y + shown_z * shown_z) : 1.0f;
-    answers.shown_x[i] = scale * shown_x;
-    answers.shown_y[i] = scale * shown_y;
-    answers.shown_z[i] = scale * shown_z;
+    const float side_x = std::abs(per_x) * std::sqrt(larger(0.0f, 1 - d_right * d_right)),
+                side_y = std::abs(per_y) * std::sqrt(larger(0.0f, 1 - d_up * d_up));
+    const float texel = (kPerspective ? p.z[i] : 1.0f) * larger(side_x, side_y);
+    answers.found[i] = p.possible[i] & int(sum[i] >= kLeastWeight) & int(across2 <= limit * limit) &
+                       int(texel <= kCoarsest * larger(angle, kPixelsPerHalf * q.half_pixel[i]));
+    const float sx = q.point_x[i] + mx * m.right.x + my * m.up.x + mz * m.ahead.x,
+                sy = q.point_y[i] + mx * m.right.y + my * m.up.y + mz * m.ahead.y,
+                sz = q.point_z[i] + mx * m.right.z + my * m.up.z + mz * m.ahead.z;
+    const float scale = sky ? 1 / std::sqrt(sx * sx + sy * sy + sz * sz) : 1.0f;
+    answers.shown_x[i] = scale * sx;
+    answers.shown_y[i] = scale * sy;
+    answers.shown_z[i] = scale * sz;
   }
+}
+
+CATOPTRA_VECTOR_CLONES void MapColors::judge(const Map& map, const MapQueries& q, Places& p,
+                                             MapAnswers& answers) {
+  if (map.perspective)
+    judge_in<true>(map, q, p, answers);
+  else
+    judge_in<false>(map, q, p, answers);
 }
 
 CATOPTRA_VECTOR_CLONES void MapColors::mix(const Places& p, MapAnswers& answers) {

@@ -103,7 +103,7 @@ bool ModeChooser::meets_error(Mode mode) const {
 }
 
 bool ModeChooser::to_be_verified(Mode mode) const {
-  return has_optics_ && mode == Mode::pvrr && (wrong_share_ < 0 || moved_frames_ >= kVerifyEvery);
+  return mode == Mode::pvrr && asks_for_verification();
 }
 
 const ModeChooser::Estimate& ModeChooser::most_hopeful(const FrameKind& kind) const {

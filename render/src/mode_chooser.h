@@ -24,8 +24,9 @@ struct FrameKind {
 /// What is known of a frame that was drawn.
 struct FrameCost {
   double total_ms = 0;
-  double pvrr_ms = 0;       ///< mode exact: the share of its pvrr picture
-  double wrong_share = -1;  ///< mode exact: of the optics' pixels, those that pvrr shows wrong; < 0: unknown
+  double pvrr_ms = 0;  ///< mode exact: the share of its pvrr picture
+  double wrong_share =
+      -1;  ///< mode exact: of the optics' pixels, those that pvrr shows wrong; < 0: not verified
 };
 
 /// A small picture that is to be drawn for its cost.
@@ -49,6 +50,12 @@ class ModeChooser {
   /// takes is known.
   [[nodiscard]] std::optional<ModeTrial> next_trial(const FrameKind& kind);
   void trial_drawn(const ModeTrial& trial, const FrameCost& cost);
+
+  /// Whether what pvrr shows has not been verified for long: FrameCost::wrong_share of the next frame of mode
+  /// exact should be known.
+  [[nodiscard]] bool asks_for_verification() const {
+    return has_optics_ && (wrong_share_ < 0 || moved_frames_ >= kVerifyEvery);
+  }
 
   [[nodiscard]] ModeChoice choose(const FrameKind& kind) const;
   /// A whole frame was drawn by the mode chosen.

@@ -6,25 +6,40 @@
 namespace catoptra::render {
 namespace {
 
-/// Indices of the marked pixels and of those beside them: rasteriser and ray tracer round differently, so
-/// that on the outline one may see the optic where the other does not. The ray tracer knows what to do with
-/// both.
-std::vector<std::uint32_t> with_neighbours(const std::vector<std::uint8_t>& mask, int width, int height) {
-  std::vector<std::uint32_t> pixels;
-  std::vector<std::uint8_t> rows(
-      static_cast<std::size_t>(width));  // marked in this row or the ones beside it
+/// `mask` is 255 or 0.
+std::vector<std::uint8_t> with_edges(const std::vector<std::uint8_t>& mask, int width, int height) {
+  const auto wide = static_cast<std::size_t>(width);
+  std::vector<std::uint8_t> marks(mask.size());
+  std::vector<std::uint8_t> any(wide), all(wide);  // of this row and the ones beside it
   for (int y = 0; y < height; ++y) {
-    std::fill(rows.begin(), rows.end(), std::uint8_t(0));
-    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row)
-      for (int x = 0; x < width; ++x) rows[x] |= mask[static_cast<std::size_t>(row) * width + x];
-    for (int x = 0; x < width; ++x)
-      if (rows[x] | rows[std::max(0, x - 1)] | rows[std::min(width - 1, x + 1)])
-        pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+    std::fill(any.begin(), any.end(), std::uint8_t(0));
+    std::fill(all.begin(), all.end(), std::uint8_t(255));
+    for (int row = std::max(0, y - 1); row <= std::min(height - 1, y + 1); ++row) {
+      const std::uint8_t* of_row = &mask[static_cast<std::size_t>(row) * wide];
+      for (std::size_t x = 0; x < wide; ++x) {
+        any[x] |= of_row[x];
+        all[x] &= of_row[x];
+      }
+    }
+    std::uint8_t* out = &marks[static_cast<std::size_t>(y) * wide];
+    for (std::size_t x = 0; x < wide; ++x) {
+      const std::size_t before = x > 0 ? x - 1 : x, after = x + 1 < wide ? x + 1 : x;
+      const bool some = (any[before] | any[x] | any[after]) != 0,
+                 every = (all[before] & all[x] & all[after]) != 0;
+      out[x] = every ? kOpticPixel : some ? kOpticEdge : std::uint8_t(0);
+    }
   }
-  return pixels;
+  return marks;
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> marked_pixels(const std::vector<std::uint8_t>& marks) {
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    if (marks[i] != 0) pixels.push_back(static_cast<std::uint32_t>(i));
+  return pixels;
+}
 
 OpticMask::OpticMask(const Scene& scene, const RasterScene& raster)
     : scene_(scene),
@@ -57,11 +72,11 @@ void OpticMask::draw(const RasterView& view) {
   }
 }
 
-std::vector<std::uint32_t> OpticMask::pixels() const {
+std::vector<std::uint8_t> OpticMask::marks() const {
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
-  return with_neighbours(mask, size_.x, size_.y);
+  return with_edges(mask, size_.x, size_.y);
 }
 
 }  // namespace catoptra::render

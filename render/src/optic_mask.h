@@ -12,6 +12,11 @@
 
 namespace catoptra::render {
 
+inline constexpr std::uint8_t kOpticEdge = 1, kOpticPixel = 2;
+
+/// row * width + column of the pixels with a mark, ascending.
+[[nodiscard]] std::vector<std::uint32_t> marked_pixels(const std::vector<std::uint8_t>& marks);
+
 /// Kept from frame to frame; needs the same current context throughout.
 class OpticMask {
  public:
@@ -22,8 +27,10 @@ class OpticMask {
   void begin(glm::ivec2 size, const GlTexture* depth);
   /// Adds the optics as seen in `view`, which must be the one that RasterScene has begun last.
   void draw(const RasterView& view);
-  /// row * width + column of every pixel in or beside which some draw shows an optic, ascending.
-  [[nodiscard]] std::vector<std::uint32_t> pixels() const;
+  /// Per pixel kOpticPixel where some draw shows an optic in it and in all pixels beside it, kOpticEdge where
+  /// in it or in one beside it, else 0: rasteriser and ray tracer round differently, so that on the outline
+  /// one may see the optic where the other does not. The ray tracer knows what to do with both.
+  [[nodiscard]] std::vector<std::uint8_t> marks() const;
 
  private:
   const Scene& scene_;

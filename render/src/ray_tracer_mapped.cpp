@@ -20,7 +20,8 @@ MapQueries queries_of(const optics::RayPacket16& rays, float before_mm, const fl
   MapQueries q;
   for (int i = 0; i < kLanes; ++i) {
     const bool sky = meets_nothing(rays, i);
-    const float x = rays.direction_x[i], y = rays.direction_y[i], z = rays.direction_z[i], way = rays.t_max[i];
+    const float x = rays.direction_x[i], y = rays.direction_y[i], z = rays.direction_z[i],
+                way = rays.t_max[i];
     q.sky[i] = sky;
     q.direction_x[i] = x;
     q.direction_y[i] = y;

@@ -6,6 +6,7 @@
 
 #include "optics/vertex_hits.h"
 #include "render/src/lens_rays.h"
+#include "render/src/optic_mask.h"
 #include "render/src/ray_tracer_chain_query.h"
 #include "render/src/ray_tracer_packet_lanes.h"
 #include "render/src/shading_vector_clones.h"
@@ -55,6 +56,14 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
   }
 }
 
+/// Whether every pixel of the packet is known to.
+bool show_optics_alone(const PixelPacket& pixels, std::span<const std::uint8_t> marks, const Frame& frame) {
+  if (marks.empty()) return false;
+  for (int i = 0; i < kLanes; ++i)
+    if (pixels.active[i] && marks[index_of(pixels, i, frame)] != kOpticPixel) return false;
+  return true;
+}
+
 /// Where colours come from maps, what these show.
 void write_shown(const PixelPacket& pixels, const MapLanes& found, Frame& frame) {
   for (int i = 0; i < kLanes; ++i) {
@@ -101,7 +110,7 @@ void PacketTracer::optic_changed(std::size_t index) {
 
 /// Lanes that a lens stands before the nearest hit of keep none: refract() gives them their colour.
 void PacketTracer::primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset,
-                           Packet& p) const {
+                           std::uint32_t mask, Packet& p) const {
   const CameraRays& camera = view.camera;
   const glm::vec3 corner(camera.corner + offset.x * camera.dx + offset.y * camera.dy), dx(camera.dx),
       dy(camera.dy);
@@ -119,7 +128,7 @@ void PacketTracer::primary(const PacketView& view, const PixelPacket& pixels, gl
     p.column[i] = pixels.column[i] + offset.x;
     p.row[i] = pixels.row[i] + offset.y;
   }
-  rays_.intersect16(p.first, optics::kEverything, true);
+  rays_.intersect16(p.first, mask, true);
   lenses_.find(view.entered, p.first, p.lens);
 }
 
@@ -273,7 +282,9 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
   std::copy(std::begin(pixels.active), std::end(pixels.active), std::begin(p.shade.active));
   std::fill(std::begin(p.traced), std::end(p.traced), false);
   std::fill(std::begin(p.found.answers.found), std::end(p.found.answers.found), 0);
-  primary(view, pixels, sample_offset(sample, std::max(1, options.samples)), p);
+  const glm::dvec2 offset = sample_offset(sample, std::max(1, options.samples));
+  const bool all_optics = mapped && show_optics_alone(pixels, mapped->marks, frame);
+  primary(view, pixels, offset, all_optics ? optics::kOptics : optics::kEverything, p);
   reflect(camera, p);
   set_hits(camera, p);
   if (mapped && p.any_mirror) take_mirrored_colors(camera, mapped->maps, p);
@@ -367,7 +378,7 @@ std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view
                                                           const PixelPacket& pixels) const {
   std::vector<SecondaryPacket> result;
   Packet p;
-  primary(view, pixels, {0, 0}, p);
+  primary(view, pixels, {0, 0}, optics::kEverything, p);
   reflect(view.camera, p);
   lenses_.enter(view.camera, p.column, p.row, p.lens);
   if (p.any_mirror) result.push_back(secondary_packet(p.second, scene_.optics.size() > 1));
@@ -381,7 +392,7 @@ std::vector<SecondaryPacket> PacketTracer::secondary_rays(const PacketView& view
 
 void PacketTracer::query_primary(const PacketView& view, const PixelPacket& pixels) const {
   Packet p;
-  primary(view, pixels, {0, 0}, p);
+  primary(view, pixels, {0, 0}, optics::kEverything, p);
 }
 
 void PacketTracer::query_secondary(const SecondaryPacket& secondary) const {

@@ -66,7 +66,8 @@ class PacketTracer {
  private:
   struct Packet;
 
-  void primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset, Packet& p) const;
+  void primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset, std::uint32_t mask,
+               Packet& p) const;
   void reflect(const CameraRays& camera, Packet& p) const;
   bool find_mirrors(Packet& p) const;
   static void load_reflected(Packet& p);

@@ -20,6 +20,7 @@
 #include "render/src/ray_tracer.h"
 #include "render/src/shading.h"
 #include "render/src/textures.h"
+#include "render/src/wrong_share.h"
 
 namespace catoptra::render {
 namespace {
@@ -49,13 +50,14 @@ FrameCost cost_of(const RenderResult& result, Mode mode, double total_ms) {
   for (const char* pass : {"trace", "pass1", "pass2", "readback"})
     if (const auto ms = result.stats.time_ms.find(pass); ms != result.stats.time_ms.end())
       cost.pvrr_ms += ms->second;
-  std::size_t shown = 0, wrong = 0;
-  for (const OpticStats& optic : result.stats.optics) {
-    shown += optic.shown_pixels;
-    wrong += optic.retraced_pixels;
-  }
-  cost.wrong_share = shown > 0 ? double(wrong) / double(shown) : 0;
   return cost;
+}
+
+void drop_geometry(Frame& frame) {
+  frame.position.clear();
+  frame.surface.clear();
+  frame.direction.clear();
+  frame.optic_id.clear();
 }
 
 /// Everything that lives on the GPU. Members go in reverse order, with the context current (see ~Impl).
@@ -158,7 +160,15 @@ struct Renderer::Impl {
     }
     ModeChoice choice = chooser->choose(kind);
     choice.trial_ms = trial_ms;
-    auto [result, cost] = timed(choice.mode, camera, options);
+    // Now and then what pvrr shows is judged by the exact picture.
+    const bool verify = choice.mode == Mode::exact && chooser->asks_for_verification();
+    FrameOptions drawn = options;
+    drawn.geometry = options.geometry || verify;
+    auto [result, cost] = timed(choice.mode, camera, drawn);
+    if (verify) {
+      cost.wrong_share = wrong_share(result.frame, render(Mode::pvrr, camera, drawn).frame);
+      if (!options.geometry) drop_geometry(result.frame);
+    }
     chooser->frame_drawn(choice.mode, kind, cost);
     result.stats.time_ms["total"] += trial_ms;
     if (trial_ms > 0) result.stats.time_ms["trials"] = trial_ms;

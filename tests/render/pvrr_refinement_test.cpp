@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <glm/ext/matrix_transform.hpp>
 
 #include "render/comparison.h"
 #include "render/renderer.h"
@@ -134,6 +135,43 @@ TEST(Refinement, ComesBackToTheSamePictureUpToHysteresis) {
   const auto again = renderer.render(Mode::pvrr, scene.camera, anew);
   EXPECT_EQ(again.frame.color, first.frame.color) << "without memory, nothing depends on it";
   EXPECT_EQ(vertices_of(again), vertices_of(first));
+}
+
+TEST(Refinement, SameBytesOnAnyNumberOfThreads) {
+  for (const bool lens : {false, true}) {
+    Scene scene = lens ? wall_behind_lens(60, 0.5, 3000) : wall_before(conic_mirror(300, 0, 170, 110, 4, 3));
+    if (lens) scene.optics.push_back(lens_of(100, 200, 6, 60, 4));
+    scene.settings.max_error_px = 0.1;
+    auto options = picture_of(scene);
+    options.threads = 1;
+    const auto one = Renderer(scene).render(Mode::pvrr, scene.camera, options);
+    options.threads = 4;
+    const auto several = Renderer(scene).render(Mode::pvrr, scene.camera, options);
+    EXPECT_EQ(vertices_of(one), vertices_of(several));
+    EXPECT_EQ(one.frame.color, several.frame.color);
+    EXPECT_EQ(one.frame.position, several.frame.position);
+  }
+}
+
+TEST(Refinement, GoesWithAMovingOptic) {
+  Scene scene = wall_before(conic_mirror(300, 0, 170, 110, 4, 3));
+  scene.settings.max_error_px = 0.1;
+  const auto options = picture_of(scene);
+  Renderer renderer(scene);
+  const auto first = renderer.render(Mode::pvrr, scene.camera, options);
+  // The mirror turns and moves away from the eye that stays: another mesh, and the limit holds for it too.
+  const glm::dmat4 motion =
+      glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(12, -7, -90)), 0.08, glm::dvec3(0, 1, 0));
+  renderer.place_optic(0, motion);
+  const auto moved = renderer.render(Mode::pvrr, scene.camera, options);
+  const auto exact = renderer.render(Mode::raytrace, scene.camera, options);
+  EXPECT_LT(compare(exact.frame, moved.frame, scene).optics.at(0).screen_px.p99, 0.1);
+  EXPECT_NE(moved.frame.color, first.frame.color);
+  // Back at its place, without memory: what it was.
+  renderer.place_optic(0, glm::dmat4(1));
+  FrameOptions anew = options;
+  anew.reuse_static = false;
+  EXPECT_EQ(renderer.render(Mode::pvrr, scene.camera, anew).frame.color, first.frame.color);
 }
 
 TEST(Refinement, CostsNoRaysWhileNothingMovesAndIsCountedElse) {
