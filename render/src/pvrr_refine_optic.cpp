@@ -1,10 +1,10 @@
-// PvrrPatch: from the mesh as tessellated to the refined one.
+// PvrrOptic: from the mesh as tessellated to the refined one.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 
 #include "optics/map_coordinates.h"
-#include "render/src/pvrr_patch.h"
+#include "render/src/pvrr_optic.h"
 
 namespace catoptra::render {
 namespace {
@@ -46,7 +46,7 @@ void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size
 
 }  // namespace
 
-void PvrrPatch::refine(const RasterView& camera, bool remember) {
+void PvrrOptic::refine(const RasterView& camera, bool remember) {
   const bool lens = optic_.kind == OpticKind::lens;
   const std::span<const VertexHit> hits = lens ? lens_rays_.hits[0] : mirror_hits_;
   refinement_.refine({optic_, lens_rays_.entered, tracer_.get(), hits, tessellated_coordinates_, view_,
@@ -66,10 +66,10 @@ void PvrrPatch::refine(const RasterView& camera, bool remember) {
   coordinates_.assign(refinement_.coordinates().begin(), refinement_.coordinates().end());
   if (lens) refine_lens(remember);
   traced_rays_ += refinement_rays_;
-  widen(view_, PvrrPatch::hits(), tessellated_coordinates_.size(), coordinates_);
+  widen(view_, PvrrOptic::hits(), tessellated_coordinates_.size(), coordinates_);
 }
 
-void PvrrPatch::refine_lens(bool remember) {
+void PvrrOptic::refine_lens(bool remember) {
   if (!remember || refinement_.mesh_changed() || refined_from_ != traced_from_) {
     if (refined_lens_.faces.empty()) refined_lens_ = optic_;
     const bool front = lens_rays_.entered == optics::LensSide::front;

@@ -21,10 +21,10 @@
 
 namespace catoptra::render {
 
-class PvrrPatch {
+class PvrrOptic {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
-  PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
+  PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
             const cad_import::BoundingBox& bounds);
 
   /// The optic itself has changed; or something else that its map shows; or the bounds of everything.

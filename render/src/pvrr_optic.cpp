@@ -1,4 +1,4 @@
-#include "render/src/pvrr_patch.h"
+#include "render/src/pvrr_optic.h"
 
 #include <tbb/parallel_for.h>
 
@@ -73,7 +73,7 @@ std::vector<VertexHit> rays_in_map(const LensRays& rays) {
 
 }  // namespace
 
-PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
+PvrrOptic::PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
                      const cad_import::BoundingBox& bounds)
     : scene_(scene),
       optic_(scene.optics[optic]),
@@ -82,7 +82,7 @@ PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster,
       rays_(rays),
       bounds_(bounds) {}
 
-void PvrrPatch::optic_changed() {
+void PvrrOptic::optic_changed() {
   refinement_.forget();
   refined_surface_.reset();
   refined_lens_ = {};
@@ -91,20 +91,20 @@ void PvrrPatch::optic_changed() {
   traced_from_.reset();
 }
 
-void PvrrPatch::set_bounds(const cad_import::BoundingBox& bounds) {
+void PvrrOptic::set_bounds(const cad_import::BoundingBox& bounds) {
   if (bounds.min == bounds_.min && bounds.max == bounds_.max) return;
   bounds_ = bounds;
   hits_hold_ = false;
 }
 
-void PvrrPatch::place(const optics::Placement& placement) {
+void PvrrOptic::place(const optics::Placement& placement) {
   if (placement == placement_) return;
   placement_ = placement;
   if (refined_surface_) refined_surface_->place(placement);
   hits_hold_ = false;
 }
 
-void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
+void PvrrOptic::update(const RasterView& camera, const FrameOptions& options) {
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
@@ -119,12 +119,12 @@ void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
   map_.resize(map_size_, options.geometry);
 }
 
-bool PvrrPatch::rays_hold(const glm::dvec3& eye_mm) const {
+bool PvrrOptic::rays_hold(const glm::dvec3& eye_mm) const {
   return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
                              kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
-void PvrrPatch::trace(const glm::dvec3& eye_mm) {
+void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
   hits_hold_ = false;
   if (optic_.kind == OpticKind::mirror) {
@@ -140,7 +140,7 @@ void PvrrPatch::trace(const glm::dvec3& eye_mm) {
   faces_eye_ = ray_count_ > 0;
 }
 
-void PvrrPatch::find_hits() {
+void PvrrOptic::find_hits() {
   hits_hold_ = true;
   scene_rays_ = ray_count_;
   const auto bounds = optics::in_own_frame(bounds_, placement_);
@@ -157,7 +157,7 @@ void PvrrPatch::find_hits() {
   for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
 }
 
-std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
+std::vector<VertexHit> PvrrOptic::with_hits(std::vector<VertexHit> rays) const {
   if (placement_ == optics::Placement()) return optics::find_scene_hits(std::move(rays), rays_);
   std::vector<VertexHit> in_world = rays;
   for (VertexHit& ray : in_world) {
@@ -172,7 +172,7 @@ std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
   return rays;
 }
 
-void PvrrPatch::fit(const RasterView& camera, bool hits_anew, bool remember) {
+void PvrrOptic::fit(const RasterView& camera, bool hits_anew, bool remember) {
   fitted_for_ = camera;
   const bool was_on_grid = on_pixel_grid_;
   const auto plane = optic_.kind == OpticKind::mirror
@@ -206,19 +206,19 @@ void PvrrPatch::fit(const RasterView& camera, bool hits_anew, bool remember) {
                                scene_.settings.texels_per_pixel));
 }
 
-void PvrrPatch::set_map_size(const PvrrMapSize& size) {
+void PvrrOptic::set_map_size(const PvrrMapSize& size) {
   if (size.texels != map_size_.texels || size.texels_per_pixel != map_size_.texels_per_pixel) drawn_.reset();
   map_size_ = size;
 }
 
-void PvrrPatch::set_coordinates() {
+void PvrrOptic::set_coordinates() {
   tessellated_coordinates_ =
       optic_.kind == OpticKind::mirror
           ? optics::map_coordinates(optic_, mirror_hits_, view_)
           : optics::map_coordinates(optic_, lens_rays_.entered, lens_rays_.hits[0], view_);
 }
 
-void PvrrPatch::show() {
+void PvrrOptic::show() {
   if (optic_.kind == OpticKind::mirror) {
     RasterOptic& surface = refined_surface_ ? *refined_surface_ : raster_.optic(index_);
     surface.set_map_coordinates(coordinates_);
@@ -228,7 +228,7 @@ void PvrrPatch::show() {
                   shown_rays(), lens_coordinates());
 }
 
-std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
+std::vector<std::vector<glm::dvec3>> PvrrOptic::lens_coordinates() const {
   const LensRays& rays = shown_rays();
   std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
   for (std::size_t k = 1; k < rays.hits.size(); ++k)
@@ -236,7 +236,7 @@ std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
   return of_samples;
 }
 
-void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+void PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   if (!faces_eye_) return;
   const glm::dvec2 offset = map_offset(offset_px);
   if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
@@ -251,7 +251,7 @@ void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) 
   drawn_.reset();
 }
 
-void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
+void PvrrOptic::set_map(glm::dvec2 offset_px, bool geometry) const {
   const RasterTarget& target = map_.target();
   const glm::dvec2 shift = -map_offset(offset_px) / glm::dvec2(target.size());
   glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
@@ -262,32 +262,32 @@ void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
   glBindTextureUnit(kMapDetailUnit, target.detail().id());
 }
 
-std::span<const VertexHit> PvrrPatch::hits() const {
+std::span<const VertexHit> PvrrOptic::hits() const {
   if (optic_.kind == OpticKind::lens) return shown_rays().hits[0];
   return refined_surface_ ? refinement_.hits() : mirror_hits_;
 }
 
-const LensRays& PvrrPatch::shown_rays() const {
+const LensRays& PvrrOptic::shown_rays() const {
   return refined_surface_ ? refined_rays_ : lens_rays_;
 }
 
-const RasterOptic& PvrrPatch::seen_surface() const {
+const RasterOptic& PvrrOptic::seen_surface() const {
   if (refined_surface_) return *refined_surface_;
   return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_rays_.entered);
 }
 
-const tessellate::OpticArrays& PvrrPatch::seen_mesh() const {
+const tessellate::OpticArrays& PvrrOptic::seen_mesh() const {
   if (refined_surface_) return refinement_.mesh();
   return optic_.kind == OpticKind::mirror ? optic_.mesh : *optics::side_of(optic_, lens_rays_.entered).mesh;
 }
 
-glm::dvec2 PvrrPatch::map_offset(glm::dvec2 offset_px) const {
+glm::dvec2 PvrrOptic::map_offset(glm::dvec2 offset_px) const {
   // In general the map's samples move within its texels as the picture's do within pixels, but not in step
   // with them.
   return on_pixel_grid_ ? plane_view_offset(offset_px) : glm::dvec2(offset_px.y, offset_px.x);
 }
 
-OpticStats PvrrPatch::statistics() const {
+OpticStats PvrrOptic::statistics() const {
   OpticStats stats{optic_.name,
                    optic_.kind == OpticKind::mirror ? "mirror" : "lens",
                    seen_mesh().vertices.size(),
@@ -301,7 +301,7 @@ OpticStats PvrrPatch::statistics() const {
   return stats;
 }
 
-std::optional<std::string> PvrrPatch::warning() const {
+std::optional<std::string> PvrrOptic::warning() const {
   if (!faces_eye_ || !refined_surface_ || !(refinement_.error_left_px() > 0)) return std::nullopt;
   std::array<char, 16> error{};
   std::snprintf(error.data(), error.size(), "%.2g", refinement_.error_left_px());
