@@ -32,6 +32,7 @@ struct PatchStats {
   glm::dvec3 viewpoint_mm{0};
   double residual_mm = 0;
   double fov_rad[2] = {0, 0};
+  int texels[2] = {0, 0};  ///< of its map
 };
 
 struct OpticStats {

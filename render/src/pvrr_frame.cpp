@@ -117,12 +117,13 @@ void PvrrFrame::set_overlay(const FrameOptions& options) {
   std::vector<OverlayLine> lines;
   for (const PvrrOptic& optic : optics_) {
     if (!optic.faces_eye()) continue;
-    for (const optics::VertexHit& hit : optic.hits()) {
+    for (std::size_t i = 0; i < optic.hits().size(); ++i) {
+      const optics::VertexHit& hit = optic.hits()[i];
       if (!passes(hit)) continue;
       const optics::Placement& at = optic.placement();
       if (options.overlay_vertices && hit.scene_hit)
         balls.push_back({at.point(hit.hit_point_mm),
-                         length_in_map(optic.view(), optic.map().size(), hit.hit_point_mm, kBallRadiusPx)});
+                         length_in_map(optic.view(i), optic.map_size(i), hit.hit_point_mm, kBallRadiusPx)});
       if (options.overlay_rays)
         lines.push_back({at.point(hit.surface_point_mm),
                          at.point(hit.scene_hit ? hit.hit_point_mm
@@ -159,14 +160,16 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
   if (optic.kind == optics::OpticKind::lens) {
     drawn.lens().draw(camera, target, geometry, LensLook::map, lens_programs_, optic, index,
                       scene_.environment.ambient,
-                      [&](bool with_geometry) { drawn.set_map(offset_px, with_geometry); });
+                      [&](std::size_t patch, bool with_geometry) { drawn.set_map(patch, offset_px, with_geometry); });
     return;
   }
   glUseProgram(mirror_program(geometry).id());
   RasterScene::set_mesh_origin(camera, drawn.seen_surface());
   set_optic_uniforms(optic, index);
-  drawn.set_map(offset_px, geometry);
-  drawn.seen_surface().draw_surface();
+  for (std::size_t patch = 0; patch < drawn.seen_surface().part_count(); ++patch) {
+    drawn.set_map(patch, offset_px, geometry);
+    drawn.seen_surface().draw_part(patch);
+  }
 }
 
 bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterView& view,
@@ -179,7 +182,7 @@ bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterVi
     if (extreme >= samples.size()) continue;
     any = true;
     drawn.lens().draw_geometry(view, target, samples[extreme], lens_programs_, i,
-                               [&](bool geometry) { drawn.set_map(offset_px, geometry); });
+                               [&](std::size_t patch, bool geometry) { drawn.set_map(patch, offset_px, geometry); });
   }
   return any;
 }

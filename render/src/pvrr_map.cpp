@@ -51,25 +51,32 @@ PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh, std::span<const
   return size;
 }
 
-void PvrrMap::resize(const PvrrMapSize& size, bool geometry) {
-  size_ = size;
-  RasterTarget::fit(target_, size.texels, geometry);
-  if (optic_depth_ && view_.size == size.texels) return;
-  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size.texels.x, size.texels.y, 1, false);
+void PvrrMap::resize(const AtlasLayout& layout, bool geometry) {
+  layout_ = layout;
+  RasterTarget::fit(target_, layout.texels, geometry);
+  if (optic_depth_ && optic_depth_size_ == layout.texels) return;
+  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, layout.texels.x, layout.texels.y, 1, false);
   optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
-  view_.size = size.texels;
+  optic_depth_size_ = layout.texels;
 }
 
 void PvrrMap::set_empty(bool geometry) {
-  resize({}, geometry);
+  resize(lay_out(std::vector{PvrrMapSize().texels}), geometry);
   const glm::vec4 black(0, 0, 0, 1);
   for (const GlTexture* texture : {&target_->color(), &target_->position(), &target_->detail()})
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
 }
 
-void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry) {
-  view_ = map_view(view, size_.texels, offset_px);
+void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
+                   const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px,
+                   bool geometry) {
+  const AtlasPlace& place = layout_.places[patch];
+  const glm::ivec2 size = place.texels + 2 * place.guard;
+  view_ = map_view(with_guard(view, place.texels, place.guard), size, offset_px);
+  view_.corner = place.corner;
+  // What is cleared is the patch's part alone.
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(place.corner.x, place.corner.y, size.x, size.y);
   clipped_ = !view.beyond_viewpoint;
   if (clipped_) {
     glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
@@ -78,7 +85,7 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   RasterPass pass;
   pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
-  pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
+  pass.level_bias = static_cast<float>(std::log2(texels_per_pixel));
   pass.clip_depth = clip_depth();
   // A little farther than the surface is, so that rounding decides nothing.
   const double farthest = clipped_ ? surface.farthest_mm(view_) : 0;
@@ -87,6 +94,7 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   pass.except = optic;
   target_->bind(geometry);
   scene.draw(view_, pass);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace catoptra::render

@@ -1,4 +1,4 @@
-// PVRR pass 1: the reflection map of one optic (paper 3.1, step 2; design 2.3 and 2.6).
+// PVRR pass 1: the reflection maps of one optic, one per patch (paper 3.1, step 2; design 2.3 and 2.6).
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -6,6 +6,7 @@
 #include <span>
 
 #include "optics/virtual_view.h"
+#include "render/src/pvrr_atlas.h"
 #include "render/src/raster_scene.h"
 #include "render/src/raster_target.h"
 
@@ -38,8 +39,8 @@ struct PvrrMapSize {
 
 class PvrrMap {
  public:
-  /// Renews the textures where their size is not that of `size`.
-  void resize(const PvrrMapSize& size, bool geometry);
+  /// Renews the textures where their size is not that of the layout.
+  void resize(const AtlasLayout& layout, bool geometry);
 
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
@@ -47,22 +48,23 @@ class PvrrMap {
   /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies.
   /// What lies between viewpoint and `surface`, the last that the light meets (that is, behind the mirror, or
   /// on this side of the lens), is cut per fragment by its depth, unless the rays converge in front of it.
-  /// `offset_px`: place of the samples within a texel.
-  void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry);
+  /// `patch`: its place in the layout; `offset_px`: place of the samples within a texel.
+  void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
+            const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px, bool geometry);
 
-  /// The view of the last draw(), with its depth of the optic (null where nothing is cut) for what is drawn
+  /// The view of the last draw(), in its place of the target, with its depth of the optic (null where nothing is cut) for what is drawn
   /// on top.
   [[nodiscard]] const RasterView& view() const { return view_; }
   [[nodiscard]] const GlTexture* clip_depth() const { return clipped_ ? &optic_depth_ : nullptr; }
 
   [[nodiscard]] const RasterTarget& target() const { return *target_; }
-  [[nodiscard]] const PvrrMapSize& size() const { return size_; }
+  [[nodiscard]] const AtlasLayout& layout() const { return layout_; }
 
  private:
-  PvrrMapSize size_;
+  AtlasLayout layout_;
   std::unique_ptr<RasterTarget> target_;
   GlTexture optic_depth_;
+  glm::ivec2 optic_depth_size_{0, 0};
   GlFramebuffer optic_depth_framebuffer_;
   RasterView view_;
   bool clipped_ = false;

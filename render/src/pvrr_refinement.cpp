@@ -9,8 +9,8 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
-#include "optics/map_coordinates.h"
 #include "render/src/lens_rays.h"
+#include "render/src/patch_coordinates.h"
 
 namespace catoptra::render {
 namespace {
@@ -118,7 +118,7 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
                         ? optics::side_of(request.optic, request.entered)
                         : optics::LensSideView{request.optic.faces, &request.optic.mesh};
   if (!mesh_ || side_ != request.entered) {
-    mesh_.emplace(side.faces, *side.mesh);
+    mesh_.emplace(side.faces, request.mesh);
     side_ = request.entered;
     known_.clear();
     was_split_.clear();
@@ -131,6 +131,8 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
   eye_mm_ = request.eye_mm;
   hits_.assign(request.hits.begin(), request.hits.end());
   coordinates_.assign(request.coordinates.begin(), request.coordinates.end());
+  patch_.assign(request.patch.begin(), request.patch.end());
+  patch_.resize(hits_.size(), 0);
   traced_rays_ = scene_rays_ = 0;
   error_left_px_ = 0;
 }
@@ -202,7 +204,9 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
     rays[i] = ray_through(rays_[edges[i].node], point - mesh_->middle(edges[i]).position_mm, near[i]);
     shown[i] = 0.5 * (coordinates_[a] + coordinates_[b]);
   }
-  const auto exact = optics::map_coordinates_like(shown, rays, request.view);
+  std::vector<std::uint32_t> patch(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) patch[i] = patch_[edges[i].ends[0]];
+  const auto exact = patch_coordinates_like(shown, rays, patch, request.views);
 
   std::vector<double> errors(edges.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), kEdgesPerTask), [&](const auto& some) {
@@ -213,7 +217,7 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
       const glm::dvec2 off = glm::dvec2(shown[i]) / shown[i].z - glm::dvec2(exact[i]) / exact[i].z;
       const double error =
           in_pixels(place_of(request.camera, point), rays[i], near[i], glm::distance(point, eye_mm_),
-                    angle_of(request.view, rays[i], near[i], off));
+                    angle_of(request.views[patch[i]], rays[i], near[i], off));
       // No error is larger than the edge: it is what an edge next to a caustic or the map's horizon gives.
       const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b]));
       errors[i] = std::isfinite(error) ? std::min(error, length_px) : length_px;
@@ -269,10 +273,11 @@ void PvrrRefinement::add_vertices(const RefinementRequest& request) {
     added.push_back(known_[nodes[i]] ? rays_[nodes[i]] : VertexHit{});
     const auto [a, b] = parents[i - base];
     between.push_back(0.5 * (coordinates_[a] + coordinates_[b]));
+    patch_.push_back(patch_[a]);
   }
   scene_rays_ += added.size();
   added = request.with_scene_hits(std::move(added));
-  const auto coordinates = optics::map_coordinates_like(between, added, request.view);
+  const auto coordinates = patch_coordinates_like(between, added, std::span(patch_).subspan(known), request.views);
   hits_.insert(hits_.end(), added.begin(), added.end());
   coordinates_.insert(coordinates_.end(), coordinates.begin(), coordinates.end());
 }

@@ -141,6 +141,7 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt)
   edges_ = make_static_buffer(std::as_bytes(std::span(edges)));
   skirt_vertices_ = make_static_buffer(std::as_bytes(std::span(skirt)));
   triangle_indices_ = static_cast<GLsizei>(triangles.size());
+  part_begins_ = {0, triangle_indices_};
   edge_indices_ = static_cast<GLsizei>(edges.size());
   skirt_vertex_count_ = static_cast<GLsizei>(skirt.size());
 
@@ -170,12 +171,21 @@ void RasterOptic::set_map_coordinates(std::span<const glm::dvec3> coordinates) {
 }
 
 void RasterOptic::draw_surface() const {
-  draw_triangles(surface_array_);
+  glBindVertexArray(surface_array_.id());
+  glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
 }
 
-void RasterOptic::draw_triangles(const GlVertexArray& array) const {
+void RasterOptic::set_parts(std::span<const std::size_t> triangles) {
+  part_begins_ = {0};
+  for (const std::size_t count : triangles)
+    part_begins_.push_back(part_begins_.back() + static_cast<GLsizei>(3 * count));
+}
+
+void RasterOptic::draw_part(std::size_t part, const GlVertexArray& array) const {
   glBindVertexArray(array.id());
-  glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
+  const GLsizei begin = part_begins_[part];
+  glDrawElements(GL_TRIANGLES, part_begins_[part + 1] - begin, GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::size_t(begin) * sizeof(std::uint32_t)));
 }
 
 void RasterOptic::draw_edges() const {
