@@ -33,13 +33,13 @@ struct Light {
 
 struct Environment {
   glm::vec3 color{0.45f, 0.6f, 0.85f};  ///< linear radiance where no `sky` is given
-  std::string sky;                      ///< path of an equirectangular image; empty: none. +z is up, centre is +y
-  float ambient = 0.3f;                 ///< irradiance from everywhere, white
+  std::string sky;       ///< path of an equirectangular image; empty: none. +z is up, centre is +y
+  float ambient = 0.3f;  ///< irradiance from everywhere, white
 };
 
 struct RenderSettings {
   std::string mode = "pvrr";
-  double max_error_px = 0;  ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
+  double max_error_px = 0;       ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
   double patch_fov_rad = 1.047;  ///< modes pvrr and exact: cut optics into patches that see no more
   int max_patches = 16;          ///< ... and no optic into more
   int depth = 3;

@@ -100,8 +100,7 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
   if (!found) return settings;
   const TomlTable table(*found, root.file(), "render",
                         {"mode", "max_error_px", "patch_fov_deg", "max_patches", "depth", "chord_mm",
-                         "angle_deg",
-                         "texels_per_pixel", "soft_shadow_samples"});
+                         "angle_deg", "texels_per_pixel", "soft_shadow_samples"});
   settings.mode = table.choice("mode", {"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"})
                       .value_or(settings.mode);
   settings.max_error_px = table.number("max_error_px", Range::not_negative()).value_or(settings.max_error_px);

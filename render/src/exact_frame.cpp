@@ -50,7 +50,7 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   FrameOptions drawn = options;
   drawn.geometry = false;
   drawn.read_back = true;
-  drawn.overlay_vertices = drawn.overlay_rays = false;
+  drawn.overlay_vertices = drawn.overlay_rays = drawn.overlay_patches = false;
   const std::size_t count = std::size_t(options.width) * std::size_t(options.height);
   Verification v{camera, options, picture, tracer, {}, {}, {}, 0, 0};
   v.wrong.assign(count, 0);

@@ -48,8 +48,8 @@ struct LensRays {
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm, optics::LensSide entered);
 
-/// Closes vertices whose ray, continued beyond the border, has no place in the map. `patch`: per vertex, which of `views` is
-/// its map's; empty: the first.
+/// Closes vertices whose ray, continued beyond the border, has no place in the map. `patch`: per vertex,
+/// which of `views` is its map's; empty: the first.
 void close_off_maps(std::vector<optics::VertexHit>& hits, std::span<const std::uint32_t> patch,
                     std::span<const optics::VirtualView> views);
 

@@ -10,8 +10,8 @@ using tessellate::OpticArrays;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Appends patch `patch` to `cut`, and to `new_triangle` where the whole mesh's triangles have gone.
-void append_patch(const OpticArrays& whole, std::span<const std::uint32_t> patch_of_triangle, std::uint32_t patch,
-                  PatchMesh& cut, std::vector<std::uint32_t>& new_triangle) {
+void append_patch(const OpticArrays& whole, std::span<const std::uint32_t> patch_of_triangle,
+                  std::uint32_t patch, PatchMesh& cut, std::vector<std::uint32_t>& new_triangle) {
   std::vector<std::uint32_t> number(whole.vertices.size(), kNone);
   for (std::size_t t = 0; t < whole.triangles.size(); ++t)
     if (patch_of_triangle[t] == patch)
@@ -44,10 +44,12 @@ void append_patch(const OpticArrays& whole, std::span<const std::uint32_t> patch
 
 }  // namespace
 
-PatchMesh cut_into_patches(const OpticArrays& whole, std::span<const std::uint32_t> patch_of_triangle, std::size_t count) {
+PatchMesh cut_into_patches(const OpticArrays& whole, std::span<const std::uint32_t> patch_of_triangle,
+                           std::size_t count) {
   PatchMesh cut;
   std::vector<std::uint32_t> new_triangle(whole.triangles.size(), kNone);
-  for (std::uint32_t patch = 0; patch < count; ++patch) append_patch(whole, patch_of_triangle, patch, cut, new_triangle);
+  for (std::uint32_t patch = 0; patch < count; ++patch)
+    append_patch(whole, patch_of_triangle, patch, cut, new_triangle);
   for (tessellate::OpticBorder border : whole.borders) {
     border.triangle = new_triangle[border.triangle];
     cut.mesh.borders.push_back(border);

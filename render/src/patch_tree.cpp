@@ -15,16 +15,18 @@ namespace {
 using optics::VertexHit;
 using tessellate::OpticArrays;
 
-// A cut that is there stays down to this share of the limits, so that patches do not come and go while an eye passes them
-// slowly. Half a patch has about half the field and half the parallax: the band is narrower than a cut.
+// A cut that is there stays down to this share of the limits, so that patches do not come and go while an eye
+// passes them slowly. Half a patch has about half the field and half the parallax: the band is narrower than
+// a cut.
 constexpr double kKeepPatch = 0.7;
-// A cut is made where the worse half is better than the whole by this factor at least. Halving what the viewpoint misses
-// by the curvature of one direction alone does not help where the other one decides.
+// A cut is made where the worse half is better than the whole by this factor at least. Halving what the
+// viewpoint misses by the curvature of one direction alone does not help where the other one decides.
 constexpr double kHelps = 0.9;
 constexpr std::size_t kFewestTriangles = 2;
 // Relative difference of the curvatures below which a surface has no principal directions.
 constexpr double kUmbilic = 1e-3;
-// Where an optic magnifies more than this, pixels no longer tell what is shown apart (as in pvrr_refinement.cpp).
+// Where an optic magnifies more than this, pixels no longer tell what is shown apart (as in
+// pvrr_refinement.cpp).
 constexpr double kMostMagnification = 20;
 
 using Triangles = std::vector<std::uint32_t>;
@@ -123,7 +125,8 @@ class Cutter {
     const double border = places[middle].first - 1e-9 * farthest;
     Cut made;
     made.axis = axis;
-    for (const std::uint32_t t : triangles) made.halves[glm::dot(centres_[t], along) < border ? 0 : 1].push_back(t);
+    for (const std::uint32_t t : triangles)
+      made.halves[glm::dot(centres_[t], along) < border ? 0 : 1].push_back(t);
     if (std::min(made.halves[0].size(), made.halves[1].size()) < kFewestTriangles) return std::nullopt;
     for (std::size_t k = 0; k < 2; ++k) made.excess[k] = excess(made.halves[k]);
     return made;
@@ -177,13 +180,14 @@ PatchLabels labels_of(const PatchRequest& request, const std::vector<Node>& leav
 
 }  // namespace
 
-PatchMeasure measure_patch(const OpticArrays& mesh, std::span<const VertexHit> hits, const optics::VirtualView& view,
-                           double px_per_rad) {
+PatchMeasure measure_patch(const OpticArrays& mesh, std::span<const VertexHit> hits,
+                           const optics::VirtualView& view, double px_per_rad) {
   PatchMeasure measure;
   measure.fov_rad = std::max(view.fov_rad.x, view.fov_rad.y);
   if (view.fov_clamped)
     for (const VertexHit& hit : hits)
-      if (hit.faces_eye) measure.fov_rad = std::max(measure.fov_rad, 2 * angle_between(hit.direction, view.direction));
+      if (hit.faces_eye)
+        measure.fov_rad = std::max(measure.fov_rad, 2 * angle_between(hit.direction, view.direction));
   if (view.projection == optics::MapProjection::parallel) return measure;
   const auto miss = [&](const VertexHit& hit) {
     return glm::length(glm::cross(hit.surface_point_mm - view.viewpoint_mm, hit.direction));
@@ -193,7 +197,8 @@ PatchMeasure measure_patch(const OpticArrays& mesh, std::span<const VertexHit> h
       const VertexHit &a = hits[triangle.vertices[k]], &b = hits[triangle.vertices[(k + 1) % 3]];
       if (!a.faces_eye || !b.faces_eye) continue;
       const double step = std::abs(nearness(a) - nearness(b));
-      const double turned = angle_between(a.direction, b.direction), turn = angle_between(a.from_eye, b.from_eye);
+      const double turned = angle_between(a.direction, b.direction),
+                   turn = angle_between(a.from_eye, b.from_eye);
       const double magnification = std::min(turn / std::max(turned, 1e-12), kMostMagnification);
       measure.parallax_px =
           std::max(measure.parallax_px, std::max(miss(a), miss(b)) * step * magnification * px_per_rad);
@@ -208,7 +213,9 @@ PatchLabels PatchTree::choose(const PatchRequest& request) {
   for (std::uint32_t t = 0; t < request.mesh.triangles.size(); ++t) root.triangles.push_back(t);
   root.excess = cutter.excess(root.triangles);
   // By how much a node asks for its cut.
-  const auto asks = [&](const Node& node) { return node.excess / (cut_last_.contains(node.number) ? kKeepPatch : 1.0); };
+  const auto asks = [&](const Node& node) {
+    return node.excess / (cut_last_.contains(node.number) ? kKeepPatch : 1.0);
+  };
   std::map<std::uint64_t, int> cut_now;
   std::vector<Node> leaves{std::move(root)}, whole;
   while (!leaves.empty() && leaves.size() + whole.size() < request.most_patches) {

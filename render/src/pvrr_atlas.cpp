@@ -11,7 +11,8 @@ AtlasLayout in_rows(std::span<const glm::ivec2> maps) {
   AtlasLayout layout{{0, 0}, std::vector<AtlasPlace>(maps.size())};
   std::vector<std::size_t> order(maps.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return maps[a].y > maps[b].y; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return maps[a].y > maps[b].y; });
   double area = 0;
   int widest = 0;
   const auto outer = [](glm::ivec2 texels) { return texels + 2 * kGuardTexels; };
@@ -56,7 +57,8 @@ AtlasLayout lay_out(std::span<const glm::ivec2> maps, int most) {
 
 optics::VirtualView with_guard(optics::VirtualView view, glm::ivec2 texels, int guard) {
   if (guard == 0) return view;
-  const double x = guard * (view.right_side - view.left) / texels.x, y = guard * (view.top - view.bottom) / texels.y;
+  const double x = guard * (view.right_side - view.left) / texels.x,
+               y = guard * (view.top - view.bottom) / texels.y;
   view.left -= x;
   view.right_side += x;
   view.bottom -= y;

@@ -143,10 +143,13 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   // First the optics, which hide much and cost little.
   for (std::size_t i = 0; i < optics_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
   raster_.draw_all(camera, pass);
-  if (!options.overlay_vertices && !options.overlay_rays) return;
+  if (!options.overlay_vertices && !options.overlay_rays && !options.overlay_patches) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   target.bind(false);
   overlay_.draw_in_scene(camera, nullptr);
+  if (options.overlay_patches)
+    for (const PvrrOptic& optic : optics_)
+      if (optic.faces_eye()) overlay_.draw_patches(camera, optic.seen_surface(), optic.viewpoint_lines());
   if (!options.overlay_vertices) return;
   for (const PvrrOptic& optic : optics_) overlay_.draw_mesh(camera, optic.seen_surface());
 }
@@ -158,9 +161,9 @@ void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const 
   glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, outside_counter_.id(),
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
   if (optic.kind == optics::OpticKind::lens) {
-    drawn.lens().draw(camera, target, geometry, LensLook::map, lens_programs_, optic, index,
-                      scene_.environment.ambient,
-                      [&](std::size_t patch, bool with_geometry) { drawn.set_map(patch, offset_px, with_geometry); });
+    drawn.lens().draw(
+        camera, target, geometry, LensLook::map, lens_programs_, optic, index, scene_.environment.ambient,
+        [&](std::size_t patch, bool with_geometry) { drawn.set_map(patch, offset_px, with_geometry); });
     return;
   }
   glUseProgram(mirror_program(geometry).id());
@@ -181,8 +184,9 @@ bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterVi
     const auto samples = extreme_samples(drawn.lens().sample_count());
     if (extreme >= samples.size()) continue;
     any = true;
-    drawn.lens().draw_geometry(view, target, samples[extreme], lens_programs_, i,
-                               [&](std::size_t patch, bool geometry) { drawn.set_map(patch, offset_px, geometry); });
+    drawn.lens().draw_geometry(
+        view, target, samples[extreme], lens_programs_, i,
+        [&](std::size_t patch, bool geometry) { drawn.set_map(patch, offset_px, geometry); });
   }
   return any;
 }

@@ -52,8 +52,8 @@ class PvrrMap {
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
             const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px, bool geometry);
 
-  /// The view of the last draw(), in its place of the target, with its depth of the optic (null where nothing is cut) for what is drawn
-  /// on top.
+  /// The view of the last draw(), in its place of the target, with its depth of the optic (null where nothing
+  /// is cut) for what is drawn on top.
   [[nodiscard]] const RasterView& view() const { return view_; }
   [[nodiscard]] const GlTexture* clip_depth() const { return clipped_ ? &optic_depth_ : nullptr; }
 

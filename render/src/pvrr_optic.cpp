@@ -192,7 +192,8 @@ void PvrrOptic::set_map_sizes(const RasterView& camera) {
     return;
   }
   std::vector<tessellate::OpticArrays> parts(views_.size());
-  for (const auto& triangle : seen_mesh().triangles) parts[patch_of(triangle.vertices[0])].triangles.push_back(triangle);
+  for (const auto& triangle : seen_mesh().triangles)
+    parts[patch_of(triangle.vertices[0])].triangles.push_back(triangle);
   std::vector<PvrrMapSize> sizes;
   for (std::size_t k = 0; k < parts.size(); ++k) sizes.push_back(size_of(parts[k], views_[k]));
   set_layout(std::move(sizes));
@@ -237,8 +238,8 @@ void PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) 
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
   for (std::size_t patch = 0; patch < views_.size(); ++patch) {
-    map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_), map_sizes_[patch].texels_per_pixel, offset,
-              geometry);
+    map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
+              map_sizes_[patch].texels_per_pixel, offset, geometry);
     if (!overlay) continue;
     map_.target().bind(false);
     overlay->draw_in_scene(map_.view(), map_.clip_depth());

@@ -1,6 +1,6 @@
-// One optic in mode pvrr: vertex rays, and for each of its patches virtual viewpoint and map, kept while nothing changes
-// them (paper 5). All but the maps is in the optic's own frame, so that rays stay as they are where eye and optic move
-// together.
+// One optic in mode pvrr: vertex rays, and for each of its patches virtual viewpoint and map, kept while
+// nothing changes them (paper 5). All but the maps is in the optic's own frame, so that rays stay as they are
+// where eye and optic move together.
 #pragma once
 
 #include <memory>
@@ -39,14 +39,15 @@ class PvrrOptic {
 
   /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices where
   /// the eye has another place as the optic sees it; their hits where either has another place in the world,
-  /// and with them patches, viewpoints, map coordinates, and the sizes of the maps. `camera`: in the world, without
-  /// sample offset.
+  /// and with them patches, viewpoints, map coordinates, and the sizes of the maps. `camera`: in the world,
+  /// without sample offset.
   void update(const RasterView& camera, const FrameOptions& options);
 
   /// Pass 1, unless the maps are there already. An `overlay` (or null) is drawn into them.
   void draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
-  /// For the program in use: the map of pass 2 of `patch` (part of seen_surface()), with the map rays that geometry needs.
+  /// For the program in use: the map of pass 2 of `patch` (part of seen_surface()), with the map rays that
+  /// geometry needs.
   void set_map(std::size_t patch, glm::dvec2 offset_px, bool geometry) const;
 
   [[nodiscard]] bool faces_eye() const { return faces_eye_; }
@@ -59,6 +60,9 @@ class PvrrOptic {
   /// The mesh that the eye sees: a mirror's, or that of the side at which a lens is entered.
   [[nodiscard]] const RasterOptic& seen_surface() const;
   [[nodiscard]] const RasterLens& lens() const { return lens_; }
+  /// From the middle of each patch to its viewpoint, in the world; a parallel map has none, and the line no
+  /// length.
+  [[nodiscard]] std::vector<OverlayLine> viewpoint_lines() const;
   /// What the last update() has cost and found.
   [[nodiscard]] OpticStats statistics() const;
   /// Where the last refinement ended at its limit.
@@ -106,7 +110,7 @@ class PvrrOptic {
   std::size_t ray_count_ = 0;
   bool faces_eye_ = false;
 
-  bool hits_hold_ = false;  ///< what follows belongs to those rays at this placement
+  bool hits_hold_ = false;                     ///< what follows belongs to those rays at this placement
   std::vector<optics::VertexHit> whole_hits_;  ///< of the mesh as tessellated
   LensRays whole_lens_rays_;
 
@@ -124,16 +128,15 @@ class PvrrOptic {
   std::unique_ptr<RasterOptic> own_surface_;  ///< null where the mesh is drawn as tessellated
   std::size_t vertex_count_ = 0;              ///< of the mesh drawn, those that patches share counted once
   optics::Optic refined_lens_;                ///< the lens with the refined mesh
-  std::optional<glm::dvec3> refined_from_;        ///< the eye that refined_paths_ belong to
-  LensRays refined_paths_, refined_rays_;         ///< without and with what they meet
+  std::optional<glm::dvec3> refined_from_;    ///< the eye that refined_paths_ belong to
+  LensRays refined_paths_, refined_rays_;     ///< without and with what they meet
 
   std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
-  std::vector<optics::VirtualView> views_;  ///< per patch
-  bool on_pixel_grid_ = false;  ///< the view is that of plane_view()
-  std::vector<glm::dvec3>
-      cut_coordinates_;                  ///< of the mesh cut into patches, in fitted_ or the plane's view
-  std::vector<glm::dvec3> coordinates_;  ///< of a lens at the reference wavelength
-  std::vector<PvrrMapSize> map_sizes_;  ///< per patch
+  std::vector<optics::VirtualView> views_;   ///< per patch
+  bool on_pixel_grid_ = false;               ///< the view is that of plane_view()
+  std::vector<glm::dvec3> cut_coordinates_;  ///< of the mesh cut into patches, in fitted_ or the plane's view
+  std::vector<glm::dvec3> coordinates_;      ///< of a lens at the reference wavelength
+  std::vector<PvrrMapSize> map_sizes_;       ///< per patch
   AtlasLayout layout_;
   RasterLens lens_;
 

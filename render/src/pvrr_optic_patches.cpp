@@ -64,7 +64,8 @@ bool PvrrOptic::choose_patches(const RasterView& camera, bool remember) {
 
 void PvrrOptic::set_patches(PatchLabels labels) {
   labels_ = std::move(labels);
-  patches_ = labels_.count > 1 ? cut_into_patches(tessellated_mesh(), labels_.of_triangle, labels_.count) : PatchMesh();
+  patches_ = labels_.count > 1 ? cut_into_patches(tessellated_mesh(), labels_.of_triangle, labels_.count)
+                               : PatchMesh();
   refinement_.forget();
   refined_ = false;
   refined_from_.reset();
@@ -78,8 +79,8 @@ void PvrrOptic::fit_patches() {
   if (!in_patches()) {
     mirror_hits_ = whole_hits_;
     lens_rays_ = whole_lens_rays_;
-    fitted_.push_back(lens ? optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds,
-                                                       kLensMargin)
+    fitted_.push_back(lens ? optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_),
+                                                       bounds, kLensMargin)
                            : optics::make_virtual_view(optic_, mirror_hits_, bounds));
   } else {
     if (lens)
@@ -90,10 +91,11 @@ void PvrrOptic::fit_patches() {
       const auto source = std::span<const std::uint32_t>(patches_.source)
                               .subspan(patches_.ranges[k].first_vertex, patches_.ranges[k].vertices);
       fitted_.push_back(
-          lens ? optics::make_virtual_view(optic_, patches_.patches[k], rays_in_map(part_of(whole_lens_rays_, source)),
-                                           bounds, kLensMargin)
-               : optics::make_virtual_view(optic_, patches_.patches[k],
-                                           gathered(std::span<const VertexHit>(whole_hits_), source), bounds));
+          lens
+              ? optics::make_virtual_view(optic_, patches_.patches[k],
+                                          rays_in_map(part_of(whole_lens_rays_, source)), bounds, kLensMargin)
+              : optics::make_virtual_view(optic_, patches_.patches[k],
+                                          gathered(std::span<const VertexHit>(whole_hits_), source), bounds));
     }
   }
   for (auto& of_sample : lens_rays_.hits) close_off_maps(of_sample, patches_.patch, fitted_);
@@ -108,8 +110,8 @@ void PvrrOptic::set_coordinates() {
   cut_coordinates_.clear();
   for (std::size_t k = 0; k < views_.size(); ++k) {
     const PatchRange& range = patches_.ranges[k];
-    const auto of_patch = optics::map_coordinates(optic_, patches_.patches[k],
-                                                  hits.subspan(range.first_vertex, range.vertices), views_[k]);
+    const auto of_patch = optics::map_coordinates(
+        optic_, patches_.patches[k], hits.subspan(range.first_vertex, range.vertices), views_[k]);
     cut_coordinates_.insert(cut_coordinates_.end(), of_patch.begin(), of_patch.end());
   }
 }
@@ -132,6 +134,17 @@ void PvrrOptic::set_surface() {
   for (const auto& v : mesh.vertices)
     distinct.insert({v.position_mm.x, v.position_mm.y, v.position_mm.z, v.normal.x, v.normal.y, v.normal.z});
   vertex_count_ = distinct.size();
+}
+
+std::vector<OverlayLine> PvrrOptic::viewpoint_lines() const {
+  std::vector<OverlayLine> lines;
+  for (std::size_t k = 0; faces_eye_ && k < views_.size(); ++k) {
+    const glm::dvec3 middle =
+        placement_.point(area_centroid(in_patches() ? patches_.patches[k] : tessellated_mesh()));
+    const bool parallel = views_[k].projection == optics::MapProjection::parallel;
+    lines.push_back({middle, parallel ? middle : placement_.point(views_[k].viewpoint_mm)});
+  }
+  return lines;
 }
 
 const tessellate::OpticArrays& PvrrOptic::tessellated_mesh() const {

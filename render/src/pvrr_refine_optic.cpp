@@ -17,10 +17,11 @@ using optics::VertexHit;
 constexpr double kMostWider = 0.25;
 constexpr double kMargin = 0.01;
 
-/// Makes room in `view` for what vertices from `first` on show that belong to `patch`, and moves the `coordinates` of that
-/// patch along. `patch_of` empty: all belong to it.
+/// Makes room in `view` for what vertices from `first` on show that belong to `patch`, and moves the
+/// `coordinates` of that patch along. `patch_of` empty: all belong to it.
 void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size_t first,
-           std::span<const std::uint32_t> patch_of, std::uint32_t patch, std::vector<glm::dvec3>& coordinates) {
+           std::span<const std::uint32_t> patch_of, std::uint32_t patch,
+           std::vector<glm::dvec3>& coordinates) {
   const auto belongs = [&](std::size_t i) { return patch_of.empty() || patch_of[i] == patch; };
   glm::dvec2 low(0), high(1);
   for (std::size_t i = first; i < hits.size(); ++i) {
@@ -53,8 +54,8 @@ void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size
 void PvrrOptic::refine(const RasterView& camera, bool remember) {
   const bool lens = optic_.kind == OpticKind::lens;
   const std::span<const VertexHit> hits = lens ? lens_rays_.hits[0] : mirror_hits_;
-  refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits, cut_coordinates_, views_, patches_.patch,
-                      *traced_from_, camera, scene_.settings.max_error_px, remember,
+  refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits, cut_coordinates_, views_,
+                      patches_.patch, *traced_from_, camera, scene_.settings.max_error_px, remember,
                       [this](std::vector<VertexHit> rays) { return with_hits(std::move(rays)); }});
   refinement_rays_ = refinement_.traced_rays();
   scene_rays_ += refinement_.scene_rays();

@@ -27,8 +27,8 @@ struct RefinementRequest {
   const optics::LensTracer* tracer = nullptr;          ///< of a lens
   std::span<const optics::VertexHit> hits;             ///< of a lens at the reference wavelength
   std::span<const glm::dvec3> coordinates;             ///< homogeneous map coordinates
-  std::span<const optics::VirtualView> views;  ///< per patch
-  std::span<const std::uint32_t> patch;        ///< per vertex; empty: all belong to the first
+  std::span<const optics::VirtualView> views;          ///< per patch
+  std::span<const std::uint32_t> patch;                ///< per vertex; empty: all belong to the first
   glm::dvec3 eye_mm{0};  ///< where the rays were traced from: the camera's place but for rounding
   const RasterView& camera;
   double max_error_px = 0.5;
@@ -64,6 +64,7 @@ class PvrrRefinement {
  private:
   void prepare(const RefinementRequest& request);
   [[nodiscard]] std::vector<double> edge_errors(const RefinementRequest& request);
+  void find_twins();
   void trace_middles(const RefinementRequest& request, std::span<const char> asked);
   [[nodiscard]] std::vector<char> choose(const RefinementRequest& request, std::span<const double> errors);
   void keep_to_limit(std::vector<std::size_t>& chosen, std::span<const double> errors);
@@ -77,6 +78,9 @@ class PvrrRefinement {
   glm::dvec3 eye_mm_{0};
   std::vector<optics::VertexHit> rays_;  ///< per node; for this eye, where known_
   std::vector<char> known_, was_split_;  ///< per node
+  /// Per node, the first at the same place of the surface: patches that share an edge share the ray at its
+  /// middle, and rays_ and known_ are those of that node.
+  std::vector<std::uint32_t> twin_;
 
   std::vector<optics::VertexHit> hits_;
   std::vector<glm::dvec3> coordinates_;

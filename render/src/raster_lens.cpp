@@ -105,8 +105,7 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
 }
 
 void RasterLens::draw_geometry(const RasterView& camera, const RasterTarget& target, std::size_t sample,
-                               LensPrograms& programs, std::size_t index,
-                               const SetLook& set_look) const {
+                               LensPrograms& programs, std::size_t index, const SetLook& set_look) const {
   const Batch& batch = batches_[sample / kSamplesPerDraw];
   target.bind(true);
   glColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

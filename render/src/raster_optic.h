@@ -19,7 +19,8 @@ class RasterOptic {
   /// Without a skirt, draw_surface_with_skirt() draws the surface alone.
   explicit RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt = true);
 
-  /// Divides the surface into parts of so many triangles, which follow each other; without this it is one part.
+  /// Divides the surface into parts of so many triangles, which follow each other; without this it is one
+  /// part.
   void set_parts(std::span<const std::size_t> triangles);
   [[nodiscard]] std::size_t part_count() const { return part_begins_.size() - 1; }
 
@@ -29,8 +30,9 @@ class RasterOptic {
   /// Each draws with whatever program is in use, which must have been given the optic as its mesh
   /// (RasterScene::set_mesh_origin).
   void draw_surface() const;
-  /// The mesh's edges as lines.
+  /// The mesh's edges as lines; those with one triangle alone, which are the borders of surface and parts.
   void draw_edges() const;
+  void draw_borders() const;
   /// The surface, continued outwards along the tangent plane at its border by its own radius.
   void draw_surface_with_skirt() const;
 
@@ -54,10 +56,10 @@ class RasterOptic {
   glm::dvec3 center_mm_{0};
   optics::Placement placement_;
   std::vector<glm::vec3> points_;  ///< of surface and skirt, relative to the centre
-  GlBuffer vertices_, map_coordinates_, triangles_, edges_, skirt_vertices_;
-  GlVertexArray surface_array_, edge_array_, skirt_array_;
+  GlBuffer vertices_, map_coordinates_, triangles_, edges_, borders_, skirt_vertices_;
+  GlVertexArray surface_array_, edge_array_, border_array_, skirt_array_;
   std::vector<GLsizei> part_begins_;  ///< in the triangles' indices, and their end
-  GLsizei triangle_indices_ = 0, edge_indices_ = 0, skirt_vertex_count_ = 0;
+  GLsizei triangle_indices_ = 0, edge_indices_ = 0, border_indices_ = 0, skirt_vertex_count_ = 0;
 };
 
 /// The mean of the surface points weighted by area, mm.
