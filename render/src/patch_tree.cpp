@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <utility>
 
@@ -19,8 +21,8 @@ using tessellate::OpticArrays;
 // passes them slowly. Half a patch has about half the field and half the parallax: the band is narrower than
 // a cut.
 constexpr double kKeepPatch = 0.7;
-// A cut is made where the worse half is better than the whole by this factor at least. Halving what the
-// viewpoint misses by the curvature of one direction alone does not help where the other one decides.
+// A cut is made where it leaves at most this share of what is too much. Of a parallax that comes from both
+// principal directions alike, a cut across one leaves about 0.8; of a field that the other one makes, all.
 constexpr double kHelps = 0.9;
 constexpr std::size_t kFewestTriangles = 2;
 // Relative difference of the curvatures below which a surface has no principal directions.
@@ -34,14 +36,13 @@ using Triangles = std::vector<std::uint32_t>;
 struct Cut {
   int axis = 0;
   std::array<Triangles, 2> halves;
-  std::array<double, 2> excess{0, 0};
-  [[nodiscard]] double worse() const { return std::max(excess[0], excess[1]); }
+  std::array<PatchMeasure, 2> measures;
 };
 
 struct Node {
   std::uint64_t number = 1;
   Triangles triangles;
-  double excess = 0;  ///< what it has over the limit, whichever is worse
+  PatchMeasure measure;
 };
 
 double nearness(const VertexHit& hit) {
@@ -97,14 +98,33 @@ class Cutter {
     }
   }
 
-  /// In units of the limits: above 1, one is exceeded. 0 where nothing of the part faces the eye.
-  [[nodiscard]] double excess(const Triangles& triangles) const {
+  /// Zeros where nothing of the part faces the eye.
+  [[nodiscard]] PatchMeasure measure(const Triangles& triangles) const {
     const PatchMesh part = part_of(triangles);
     const auto hits = gathered(request_.hits, part.source);
-    if (std::none_of(hits.begin(), hits.end(), [](const VertexHit& h) { return h.faces_eye; })) return 0;
+    if (std::none_of(hits.begin(), hits.end(), [](const VertexHit& h) { return h.faces_eye; })) return {};
     const auto view = optics::make_virtual_view(request_.optic, part.patches[0], hits, request_.bounds);
-    const PatchMeasure measure = measure_patch(part.patches[0], hits, view, request_.px_per_rad);
-    return std::max(measure.fov_rad / request_.most_fov_rad, measure.parallax_px / kMostParallax_px);
+    return measure_patch(part.patches[0], hits, view, request_.px_per_rad);
+  }
+
+  /// Field and parallax in units of their limits: above 1, one is exceeded.
+  [[nodiscard]] glm::dvec2 excess(const PatchMeasure& measure) const {
+    return {std::max(measure.fov_rad.x, measure.fov_rad.y) / request_.most_fov_rad,
+            measure.parallax_px / kMostParallax_px};
+  }
+
+  /// What `cut` leaves of that which is above `limit` times its limit in `node`.
+  [[nodiscard]] double left(const Node& node, const Cut& cut, double limit) const {
+    const glm::dvec2 above = excess(node.measure);
+    const auto &whole = node.measure, &a = cut.measures[0], &b = cut.measures[1];
+    double least = 1;
+    const auto too_wide = [&](const PatchMeasure& m) {
+      return glm::length(glm::max(m.fov_rad - limit * request_.most_fov_rad, glm::dvec2(0)));
+    };
+    if (above.x > limit) least = std::min(least, std::max(too_wide(a), too_wide(b)) / too_wide(whole));
+    if (above.y > limit)
+      least = std::min(least, std::sqrt((a.parallax_squares + b.parallax_squares) / whole.parallax_squares));
+    return least;
   }
 
   /// Across principal direction `axis`; nullopt where that leaves a half with nearly nothing.
@@ -128,7 +148,7 @@ class Cutter {
     for (const std::uint32_t t : triangles)
       made.halves[glm::dot(centres_[t], along) < border ? 0 : 1].push_back(t);
     if (std::min(made.halves[0].size(), made.halves[1].size()) < kFewestTriangles) return std::nullopt;
-    for (std::size_t k = 0; k < 2; ++k) made.excess[k] = excess(made.halves[k]);
+    for (std::size_t k = 0; k < 2; ++k) made.measures[k] = measure(made.halves[k]);
     return made;
   }
 
@@ -149,13 +169,17 @@ class Cutter {
 std::optional<Cut> best_cut(const Cutter& cutter, const Node& node, const int* last) {
   if (last) {
     auto again = cutter.cut(node.triangles, *last);
-    if (again && again->worse() < node.excess) return again;
+    if (again && cutter.left(node, *again, kKeepPatch) < 1) return again;
   }
   std::optional<Cut> best;
+  double least = kHelps;
   for (const int axis : {0, 1}) {
     auto tried = cutter.cut(node.triangles, axis);
-    if (tried && tried->worse() < kHelps * node.excess && (!best || tried->worse() < best->worse()))
-      best = std::move(tried);
+    if (!tried) continue;
+    const double left = cutter.left(node, *tried, 1);
+    if (!(left < least)) continue;
+    least = left;
+    best = std::move(tried);
   }
   return best;
 }
@@ -183,11 +207,16 @@ PatchLabels labels_of(const PatchRequest& request, const std::vector<Node>& leav
 PatchMeasure measure_patch(const OpticArrays& mesh, std::span<const VertexHit> hits,
                            const optics::VirtualView& view, double px_per_rad) {
   PatchMeasure measure;
-  measure.fov_rad = std::max(view.fov_rad.x, view.fov_rad.y);
+  measure.fov_rad = view.fov_rad;
   if (view.fov_clamped)
-    for (const VertexHit& hit : hits)
-      if (hit.faces_eye)
-        measure.fov_rad = std::max(measure.fov_rad, 2 * angle_between(hit.direction, view.direction));
+    for (const VertexHit& hit : hits) {
+      if (!hit.faces_eye) continue;
+      const double ahead = glm::dot(hit.direction, view.direction);
+      const auto side = [&](const glm::dvec3& axis) {
+        return 2 * std::abs(std::atan2(glm::dot(hit.direction, axis), ahead));
+      };
+      measure.fov_rad = glm::max(measure.fov_rad, glm::dvec2(side(view.right), side(view.up)));
+    }
   if (view.projection == optics::MapProjection::parallel) return measure;
   const auto miss = [&](const VertexHit& hit) {
     return glm::length(glm::cross(hit.surface_point_mm - view.viewpoint_mm, hit.direction));
@@ -200,8 +229,9 @@ PatchMeasure measure_patch(const OpticArrays& mesh, std::span<const VertexHit> h
       const double turned = angle_between(a.direction, b.direction),
                    turn = angle_between(a.from_eye, b.from_eye);
       const double magnification = std::min(turn / std::max(turned, 1e-12), kMostMagnification);
-      measure.parallax_px =
-          std::max(measure.parallax_px, std::max(miss(a), miss(b)) * step * magnification * px_per_rad);
+      const double parallax = std::max(miss(a), miss(b)) * step * magnification * px_per_rad;
+      measure.parallax_px = std::max(measure.parallax_px, parallax);
+      measure.parallax_squares += parallax * parallax;
     }
   return measure;
 }
@@ -211,10 +241,11 @@ PatchLabels PatchTree::choose(const PatchRequest& request) {
   const Cutter cutter(request);
   Node root;
   for (std::uint32_t t = 0; t < request.mesh.triangles.size(); ++t) root.triangles.push_back(t);
-  root.excess = cutter.excess(root.triangles);
+  root.measure = cutter.measure(root.triangles);
   // By how much a node asks for its cut.
   const auto asks = [&](const Node& node) {
-    return node.excess / (cut_last_.contains(node.number) ? kKeepPatch : 1.0);
+    const glm::dvec2 excess = cutter.excess(node.measure);
+    return std::max(excess.x, excess.y) / (cut_last_.contains(node.number) ? kKeepPatch : 1.0);
   };
   std::map<std::uint64_t, int> cut_now;
   std::vector<Node> leaves{std::move(root)}, whole;
@@ -232,7 +263,7 @@ PatchLabels PatchTree::choose(const PatchRequest& request) {
     }
     cut_now[node.number] = cut->axis;
     for (std::size_t k = 0; k < 2; ++k)
-      leaves.push_back({2 * node.number + k, std::move(cut->halves[k]), cut->excess[k]});
+      leaves.push_back({2 * node.number + k, std::move(cut->halves[k]), cut->measures[k]});
   }
   cut_last_ = std::move(cut_now);
   leaves.insert(leaves.end(), std::make_move_iterator(whole.begin()), std::make_move_iterator(whole.end()));

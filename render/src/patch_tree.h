@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <map>
 #include <span>
 #include <vector>
@@ -14,16 +15,17 @@
 namespace catoptra::render {
 
 /// Parallax above which a patch is cut, pixels; see PatchMeasure.
-inline constexpr double kMostParallax_px = 2.0;
+inline constexpr double kMostParallax_px = 1.0;
 
 /// How far one viewpoint is from serving a patch.
 struct PatchMeasure {
-  double fov_rad = 0;  ///< the larger side of the view volume
+  glm::dvec2 fov_rad{0};  ///< of the view volume, also where it is wider than a map can be
   /// By how much what stands before something else is displaced against it at its outline: the distance of a
   /// ray from the viewpoint, as an angle seen from the nearer of what the two ends of an edge meet less that
   /// from the farther, in pixels. The largest over the patch's edges. 0 where all is equally far: then the
   /// viewpoint does not matter.
   double parallax_px = 0;
+  double parallax_squares = 0;  ///< the sum of its squares over the triangles' edges, px^2
 };
 
 struct PatchRequest {
@@ -50,8 +52,10 @@ struct PatchLabels {
 class PatchTree {
  public:
   /// Cuts the worst patch again and again while one is above its limits and a cut helps, up to
-  /// `most_patches`. The cut that helps more of the two is taken. What was cut last time stays so down to
-  /// kKeepPatch of the limits (see the source), and by the same cut.
+  /// `most_patches`. A cut helps where it lowers what is above its limit: by how much the sides of the view
+  /// volume are above it, in the worse half, or the parallax, as root mean square over both. The one that
+  /// helps more of the two is taken. What was cut last time stays so down to kKeepPatch of the limits (see
+  /// the source), and by the same cut.
   [[nodiscard]] PatchLabels choose(const PatchRequest& request);
   /// The optic has changed.
   void forget() { cut_last_.clear(); }
