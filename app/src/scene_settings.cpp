@@ -119,7 +119,7 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
     if (table.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(key);
   }
   if (!unused.empty())
-    warnings.push_back("this version does not use [render] " + unused + ": one map per optic");
+    warnings.push_back("this version does not use [render] " + unused);
   return settings;
 }
 
