@@ -36,6 +36,12 @@ enum class MapInterpolation {
     const Optic& lens, LensSide entered, std::span<const VertexHit> hits, const VirtualView& view,
     MapInterpolation interpolation = MapInterpolation::fitted);
 
+/// The same for a part of an optic: `mesh` is a piece of the mirror's, or of the side at which a lens is
+/// entered.
+[[nodiscard]] std::vector<glm::dvec3> map_coordinates(
+    const Optic& optic, const tessellate::OpticArrays& mesh, std::span<const VertexHit> hits,
+    const VirtualView& view, MapInterpolation interpolation = MapInterpolation::fitted);
+
 /// Map coordinates of a further wavelength: what `hits` show, with the denominators q of `reference` (the
 /// coordinates of the same vertices at another wavelength, nearly the same map). Vertices that show nothing
 /// keep the reference's. Throws catoptra::Error where the counts differ.

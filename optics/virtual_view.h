@@ -75,6 +75,13 @@ struct VirtualView {
                                             const cad_import::BoundingBox& scene_bounds,
                                             double margin = 0.01);
 
+/// The same for a part of an optic: `mesh` is a piece of the mirror's, or of the side at which a lens is
+/// entered, and `hits` belong to it.
+[[nodiscard]] VirtualView make_virtual_view(const Optic& optic, const tessellate::OpticArrays& mesh,
+                                            std::span<const VertexHit> hits,
+                                            const cad_import::BoundingBox& scene_bounds,
+                                            double margin = 0.01);
+
 /// The same for a lens entered from side `entered`. `hits` holds the rays of one wavelength, one per vertex
 /// of that side, or those of several wavelengths one list after the other: one volume then holds them all.
 [[nodiscard]] VirtualView make_virtual_view(const Optic& lens, LensSide entered,

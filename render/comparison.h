@@ -29,6 +29,11 @@ struct OpticError {
   /// The same in pixels, through the local derivative of the exact last ray by pixel, among pixels of the
   /// same path. Left out on caustics, where it is singular.
   ErrorQuantiles screen_px;
+  /// Of the pixels compared, those whose picture shows another surface than the exact ray meets: what is
+  /// shown lies off the plane of the exact point by more than its angle explains, or one of the two is the
+  /// sky.
+  std::size_t occlusion_pixels = 0;
+  ErrorQuantiles visible_px;  ///< screen_px of the others
 };
 
 struct ImageError {

@@ -46,6 +46,7 @@ struct PatchStats {
   glm::dvec3 viewpoint_mm{0};
   double residual_mm = 0;
   double fov_rad[2] = {0, 0};
+  int texels[2] = {0, 0};  ///< of its map
 };
 
 struct OpticStats {
@@ -86,6 +87,7 @@ struct FrameOptions {
   bool read_back = true;          ///< false: leave the picture on the GPU (bench)
   bool overlay_vertices = false;  ///< red balls at the exact hits, and the optic's mesh in white
   bool overlay_rays = false;      ///< the vertex rays as lines
+  bool overlay_patches = false;   ///< mode pvrr: each patch tinted, its border, and a line to its viewpoint
   /// Keep from the last frame what cannot have changed: vertex rays, viewpoints and maps while eye and optic
   /// stay, the rays alone while they move together (PVRR paper, 5). Changes no picture by more than
   /// rounding, only its cost; false: everything anew in every frame.

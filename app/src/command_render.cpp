@@ -30,8 +30,6 @@ struct RenderOptions {
 };
 
 void check_usage(const RenderOptions& options) {
-  if (options.overlay == "patches")
-    throw UsageError("overlay 'patches' is not in this version", "it has vertices, rays, error, retraced");
   if (options.report == "-" && options.output == "-")
     throw UsageError("the picture and the report cannot both go to standard output");
   if (!options.report.empty() && options.report == options.output)
@@ -112,6 +110,10 @@ void check_overlay(const RenderOptions& options, render::Mode mode) {
   if ((options.overlay == "vertices" || options.overlay == "rays") && mode == render::Mode::exact)
     throw UsageError("overlay '" + options.overlay + "' belongs to mode 'pvrr', and this is 'exact'",
                      "add --mode pvrr, or ask for --overlay retraced");
+  if (options.overlay == "patches" && mode != render::Mode::pvrr)
+    throw UsageError("overlay 'patches' belongs to mode 'pvrr', and this is '" +
+                         std::string(render::mode_name(mode)) + "'",
+                     "add --mode pvrr");
 }
 
 int run_render(const RenderOptions& options, const CommonOptions& common) {
@@ -128,6 +130,7 @@ int run_render(const RenderOptions& options, const CommonOptions& common) {
   frame_options.samples = options.samples;
   frame_options.overlay_vertices = options.overlay == "vertices" || options.overlay == "rays";
   frame_options.overlay_rays = options.overlay == "rays";
+  frame_options.overlay_patches = options.overlay == "patches";
   const bool layers = options.aov || !options.report.empty();
   frame_options.geometry = layers || options.overlay == "error";
   render::RenderResult result = session.render(*mode, frame_options);
@@ -172,8 +175,9 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
   app->add_option("--report", options->report, "JSON report to write; an .exr gets the geometry layers")
       ->option_text("R.json");
   app->add_flag("--aov", options->aov, "Geometry layers in an .exr");
-  app->add_option("--overlay", options->overlay,
-                  "Draw over the picture: vertices, rays, error, or retraced (mode exact)")
+  app->add_option(
+         "--overlay", options->overlay,
+         "Draw over the picture: vertices, rays, patches (mode pvrr), error, or retraced (mode exact)")
       ->check(CLI::IsMember({"vertices", "rays", "patches", "error", "retraced"}))
       ->option_text("WHAT");
   app->add_option("--reference", options->reference, "Picture to compare with; exit code 3 where it differs")

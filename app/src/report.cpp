@@ -20,7 +20,8 @@ ordered_json patches_json(const std::vector<render::PatchStats>& patches) {
   for (const render::PatchStats& patch : patches)
     result.push_back({{"viewpoint_mm", {patch.viewpoint_mm.x, patch.viewpoint_mm.y, patch.viewpoint_mm.z}},
                       {"residual_mm", patch.residual_mm},
-                      {"fov_deg", {glm::degrees(patch.fov_rad[0]), glm::degrees(patch.fov_rad[1])}}});
+                      {"fov_deg", {glm::degrees(patch.fov_rad[0]), glm::degrees(patch.fov_rad[1])}},
+                      {"texels", {patch.texels[0], patch.texels[1]}}});
   return result;
 }
 
@@ -60,6 +61,9 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
       entry["other_path_pixels"] = errors->at(i).other_path_pixels;
       entry["error_arcmin"] = quantiles_json(errors->at(i).arcmin);
       entry["error_px"] = quantiles_json(errors->at(i).screen_px);
+      entry["visible_error_px"] = quantiles_json(errors->at(i).visible_px);
+      const double pixels = double(std::max<std::size_t>(errors->at(i).pixels, 1));
+      entry["occlusion_fraction"] = double(errors->at(i).occlusion_pixels) / pixels;
     }
     entry["retraced_fraction"] = retraced_fraction(mode, told);
     entries.push_back(std::move(entry));

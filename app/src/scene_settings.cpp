@@ -99,12 +99,13 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
   const toml::table* found = root.table("render");
   if (!found) return settings;
   const TomlTable table(*found, root.file(), "render",
-                        {"mode", "max_error_px", "patch_fov_deg", "depth", "chord_mm", "angle_deg",
-                         "texels_per_pixel", "soft_shadow_samples"});
+                        {"mode", "max_error_px", "patch_fov_deg", "max_patches", "depth", "chord_mm",
+                         "angle_deg", "texels_per_pixel", "soft_shadow_samples"});
   settings.mode = table.choice("mode", {"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"})
                       .value_or(settings.mode);
   settings.max_error_px = table.number("max_error_px", Range::not_negative()).value_or(settings.max_error_px);
   settings.patch_fov_rad = glm::radians(table.number("patch_fov_deg", {1, 170}).value_or(60));
+  settings.max_patches = table.integer("max_patches", 1, 64).value_or(settings.max_patches);
   settings.depth = table.integer("depth", 1, 32).value_or(settings.depth);
   settings.chord_mm = table.number("chord_mm", Range::positive()).value_or(settings.chord_mm);
   settings.angle_rad = glm::radians(table.number("angle_deg", {0, 90, true}).value_or(5));
@@ -114,11 +115,11 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
       table.integer("soft_shadow_samples", 1, 4096).value_or(settings.soft_shadow_samples);
   // Parts of the format whose passes this version does not have: said once, never passed over in silence.
   std::string unused;
-  for (const std::string_view key : {"patch_fov_deg", "soft_shadow_samples"}) {
+  for (const std::string_view key : {"soft_shadow_samples"}) {
     if (table.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(key);
   }
   if (!unused.empty())
-    warnings.push_back("this version does not use [render] " + unused + ": one map per optic");
+    warnings.push_back("this version does not use [render] " + unused);
   return settings;
 }
 

@@ -56,6 +56,12 @@ std::vector<glm::dvec3> map_coordinates(const Optic& lens, LensSide entered, std
   return coordinates_of_mesh(lens, *side_of(lens, entered).mesh, hits, view, interpolation);
 }
 
+std::vector<glm::dvec3> map_coordinates(const Optic& optic, const tessellate::OpticArrays& mesh,
+                                        std::span<const VertexHit> hits, const VirtualView& view,
+                                        MapInterpolation interpolation) {
+  return coordinates_of_mesh(optic, mesh, hits, view, interpolation);
+}
+
 std::vector<glm::dvec3> map_coordinates_like(std::span<const glm::dvec3> reference,
                                              std::span<const VertexHit> hits, const VirtualView& view) {
   if (hits.size() != reference.size())

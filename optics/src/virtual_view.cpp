@@ -263,6 +263,12 @@ VirtualView make_virtual_view(const Optic& optic, std::span<const VertexHit> hit
   return view_of_mesh(optic, optic.mesh, hits, scene_bounds, margin);
 }
 
+VirtualView make_virtual_view(const Optic& optic, const tessellate::OpticArrays& mesh,
+                              std::span<const VertexHit> hits, const cad_import::BoundingBox& scene_bounds,
+                              double margin) {
+  return view_of_mesh(optic, mesh, hits, scene_bounds, margin);
+}
+
 VirtualView make_virtual_view(const Optic& lens, LensSide entered, std::span<const VertexHit> hits,
                               const cad_import::BoundingBox& scene_bounds, double margin) {
   return view_of_mesh(lens, *side_of(lens, entered).mesh, hits, scene_bounds, margin);

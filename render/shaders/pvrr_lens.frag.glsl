@@ -4,6 +4,7 @@
 // v_shown: homogeneous map coordinates (s q, t q, q).
 
 layout(location = 7) uniform vec2 map_shift;  // sub-texel offset with which this sample's map was drawn
+layout(location = 10) uniform vec4 map_place;  // of the patch's map in the atlas: offset, and factor
 layout(location = 11) uniform bool counts;    // pixels outside the map, in the first of several draws
 
 layout(binding = 2) uniform sampler2D map_color;
@@ -20,14 +21,13 @@ layout(binding = 0, offset = 0) uniform atomic_uint outside_map;
 
 bool in_map(vec2 st) { return all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0))); }
 
-// Map row 0 is the top.
-vec2 texel_place(vec2 st) { return vec2(st.x, 1.0 - st.y) + map_shift; }
+// Map row 0 is the top. Beyond its border the map goes on with what the border shows.
+vec2 texel_place(vec2 st) { return map_place.xy + map_place.zw * clamp(vec2(st.x, 1.0 - st.y), 0.0, 1.0) + map_shift; }
 
 void main() {
   bool open = meets_exit();
   vec3 color = vec3(0.0);
   for (int k = 0; k < SAMPLES; ++k) {
-    // Beyond its border the map goes on with what the border shows.
     vec2 st = v_shown[k].xy / v_shown[k].z;
     color += transmitted(open && v_shown[k].w > 0.0, k, textureLod(map_color, texel_place(st), 0.0).rgb);
   }

@@ -7,6 +7,8 @@ in vec3 v_texture;  // homogeneous map coordinates (s q, t q, q)
 
 layout(location = 7) uniform vec2 map_shift;  // sub-texel offset with which this sample's map was drawn
 
+layout(location = 10) uniform vec4 map_place;  // of the patch's map in the atlas: offset, and factor
+
 layout(binding = 2) uniform sampler2D map_color;
 #ifdef GEOMETRY
 layout(binding = 3) uniform sampler2D map_position;
@@ -24,7 +26,7 @@ void main() {
   bool inside = all(greaterThanEqual(st, vec2(0.0))) && all(lessThanEqual(st, vec2(1.0)));
   vec3 direction = reflect(v_relative, normalize(v_normal));
   // Map row 0 is the top.
-  vec2 at = vec2(st.x, 1.0 - st.y) + map_shift;
+  vec2 at = map_place.xy + map_place.zw * vec2(st.x, 1.0 - st.y) + map_shift;
   vec3 seen;
   if (inside) {
     seen = textureLod(map_color, at, 0.0).rgb;

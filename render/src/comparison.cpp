@@ -58,7 +58,8 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
   check_geometry(frame, "picture");
   Comparison result;
   result.optics.resize(scene.optics.size());
-  std::vector<std::vector<double>> arcmin(scene.optics.size()), pixels(scene.optics.size());
+  std::vector<std::vector<double>> arcmin(scene.optics.size()), pixels(scene.optics.size()),
+      visible(scene.optics.size());
   for (std::size_t i = 0; i < reference.color.size(); ++i) {
     const std::int32_t exact = reference.optic_id[i], shown = frame.optic_id[i];
     for (const std::int32_t id : {exact, shown})
@@ -77,13 +78,18 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
     if (!direction) continue;
     arcmin[std::size_t(exact)].push_back(kArcminPerRad *
                                          angle(*direction, glm::dvec3(reference.direction[i])));
-    if (const auto px = screen_error(reference, frame, i, *direction))
-      pixels[std::size_t(exact)].push_back(*px);
+    const auto px = screen_error(reference, frame, i, *direction);
+    if (px) pixels[std::size_t(exact)].push_back(*px);
+    if (!same_surface(reference, frame, i, *direction))
+      ++result.optics[std::size_t(exact)].occlusion_pixels;
+    else if (px)
+      visible[std::size_t(exact)].push_back(*px);
   }
   for (std::size_t k = 0; k < result.optics.size(); ++k) {
     result.optics[k].pixels = arcmin[k].size();
     result.optics[k].arcmin = quantiles(std::move(arcmin[k]));
     result.optics[k].screen_px = quantiles(std::move(pixels[k]));
+    result.optics[k].visible_px = quantiles(std::move(visible[k]));
   }
   result.image = image_error(reference, frame);
   return result;

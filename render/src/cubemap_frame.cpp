@@ -155,7 +155,7 @@ void CubemapFrame::draw_lens(std::size_t optic, const RasterTarget& target, cons
                              bool geometry) {
   const Cube& cube = cubes_[optic];
   lenses_[optic].raster.draw(camera, target, geometry, LensLook::cube, lens_programs_, scene_.optics[optic],
-                             optic, scene_.environment.ambient, [&](bool with_geometry) {
+                             optic, scene_.environment.ambient, [&](std::size_t, bool with_geometry) {
                                glBindTextureUnit(kMapColorUnit, cube.color.id());
                                if (with_geometry) set_cube_geometry(cube, center_mm(optic));
                              });

@@ -46,7 +46,8 @@ bool complete_geometry(const Frame& frame) {
 /// A name beside the target that no other process uses, with the suffix that decides the format.
 std::filesystem::path temporary_beside(const std::filesystem::path& file) {
   std::filesystem::path temporary = file;
-  temporary.replace_filename(file.stem().string() + ".part" + std::to_string(::getpid()) + file.extension().string());
+  temporary.replace_filename(file.stem().string() + ".part" + std::to_string(::getpid()) +
+                             file.extension().string());
   return temporary;
 }
 

@@ -148,10 +148,12 @@ LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& t
   return rays;
 }
 
-void close_off_map(std::vector<VertexHit>& hits, const optics::VirtualView& view) {
-  if (view.projection == optics::MapProjection::parallel) return;
-  for (VertexHit& hit : hits) {
-    if (!hit.faces_eye || passes(hit)) continue;
+void close_off_maps(std::vector<VertexHit>& hits, std::span<const std::uint32_t> patch,
+                    std::span<const optics::VirtualView> views) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    VertexHit& hit = hits[i];
+    const optics::VirtualView& view = views[patch.empty() ? 0 : patch[i]];
+    if (view.projection == optics::MapProjection::parallel || !hit.faces_eye || passes(hit)) continue;
     const glm::dvec3 shown = hit.scene_hit ? hit.hit_point_mm - view.viewpoint_mm : hit.direction;
     constexpr double kGrazing = 0.05;  // sine of the angle above the plane across the view
     const double depth = glm::dot(shown, view.direction), least = kGrazing * glm::length(shown);

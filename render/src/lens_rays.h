@@ -1,7 +1,9 @@
 // What becomes of the eye's rays through a lens's vertices, at every wavelength of the picture (paper 4.5).
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "optics/lens_path.h"
@@ -49,7 +51,9 @@ struct LensRays {
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm, optics::LensSide entered);
 
-/// Closes vertices whose ray, continued beyond the border, has no place in the map.
-void close_off_map(std::vector<optics::VertexHit>& hits, const optics::VirtualView& view);
+/// Closes vertices whose ray, continued beyond the border, has no place in the map. `patch`: per vertex,
+/// which of `views` is its map's; empty: the first.
+void close_off_maps(std::vector<optics::VertexHit>& hits, std::span<const std::uint32_t> patch,
+                    std::span<const optics::VirtualView> views);
 
 }  // namespace catoptra::render

@@ -21,6 +21,8 @@ constexpr float kLeastWeight = 1.0f / 256;
 // What float coordinates leave uncertain of the distance of a point from a plane: those of the point and of
 // the texel, the distance along the ray and the depth in the map.
 constexpr float kRounding = 8 * std::numeric_limits<float>::epsilon();
+// A depth at which nothing can lie, and which is not the sky's either.
+constexpr float kOtherRegion = -1;
 // Half a pixel, of which queries know a part (see set_half_pixels()).
 constexpr float kPixelsPerHalf = float(1 / kExactTolerance_px);
 
@@ -45,7 +47,7 @@ struct alignas(64) MapColors::Places {
   float height[kLanes];                      ///< of the triangle's plane over the map's origin
   float off_x[4][kLanes], off_y[4][kLanes];  ///< of the texels' centres from the place, texels
   float weight[4][kLanes];                   ///< 0 beyond the map's border
-  std::uint32_t index[4][kLanes];            ///< within the map
+  std::uint32_t index[4][kLanes];            ///< from the first texel of the map
   float depth[4][kLanes];                    ///< as stored
   std::uint64_t color[4][kLanes];
   float column[kLanes], row[kLanes];  ///< in texels, centres at halves
@@ -59,7 +61,24 @@ void MapColors::clear(std::size_t optics) {
   depths_.clear();
 }
 
-void MapColors::add(std::size_t optic, const RasterView& view, const RasterTarget& target) {
+void MapColors::add(std::size_t optic, std::span<const RasterView> views, const RasterTarget& target) {
+  const std::size_t first = depths_.size(),
+                    count = std::size_t(target.size().x) * std::size_t(target.size().y);
+  for (const RasterView& view : views) {
+    Map map = map_of(view);
+    map.stride = target.size().x;
+    map.first = first + std::size_t(view.corner.y) * std::size_t(map.stride) + std::size_t(view.corner.x);
+    maps_[optic].push_back(map);
+  }
+  depths_.resize(first + count);
+  colors_.resize(first + count);
+  glGetTextureImage(target.depth().id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                    static_cast<GLsizei>(count * sizeof(float)), &depths_[first]);
+  glGetTextureImage(target.color().id(), 0, GL_RGBA, GL_HALF_FLOAT,
+                    static_cast<GLsizei>(count * sizeof(std::uint64_t)), &colors_[first]);
+}
+
+MapColors::Map MapColors::map_of(const RasterView& view) {
   const glm::dmat3 to_world = glm::transpose(view.rotation);
   const glm::dmat4& p = view.projection;
   Map map;
@@ -68,7 +87,7 @@ void MapColors::add(std::size_t optic, const RasterView& view, const RasterTarge
   map.up = glm::vec3(to_world[1]);
   map.ahead = glm::vec3(-to_world[2]);
   map.perspective = p[2][3] != 0;
-  map.size = target.size();
+  map.size = view.size;
   // Clip x of a perspective: p00 right - p20 depth, over depth; of a parallel projection p00 right + p30.
   const double shift_x = map.perspective ? -p[2][0] : p[3][0], shift_y = map.perspective ? -p[2][1] : p[3][1];
   map.scale_x = float(0.5 * p[0][0] * map.size.x);
@@ -77,15 +96,18 @@ void MapColors::add(std::size_t optic, const RasterView& view, const RasterTarge
   map.shift_y = float((0.5 - 0.5 * shift_y) * map.size.y);
   map.depth_factor = float(map.perspective ? p[3][2] : -1 / p[2][2]);
   map.depth_shift = float(map.perspective ? -p[2][2] : p[3][2]);
-  map.first = depths_.size();
-  maps_[optic].push_back(map);
-  const std::size_t count = std::size_t(map.size.x) * std::size_t(map.size.y);
-  depths_.resize(map.first + count);
-  colors_.resize(map.first + count);
-  glGetTextureImage(target.depth().id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
-                    static_cast<GLsizei>(count * sizeof(float)), &depths_[map.first]);
-  glGetTextureImage(target.color().id(), 0, GL_RGBA, GL_HALF_FLOAT,
-                    static_cast<GLsizei>(count * sizeof(std::uint64_t)), &colors_[map.first]);
+  map.depth_of_far = view.depth_of_far;
+  map.depth_of_near = view.depth_of_near;
+  map.sense = map.depth_of_near < map.depth_of_far ? -1.0f : 1.0f;
+  return map;
+}
+
+/// Of a stored depth; kOtherRegion where what is stored belongs to the other view of the same map.
+float MapColors::clip_depth(const Map& map, float stored) {
+  const float depth = (stored - map.depth_of_far) / (map.depth_of_near - map.depth_of_far);
+  // The depth that both views may store is the far end of neither.
+  const bool own = depth >= 0 && (map.sense < 0 ? depth < 1 : depth <= 1);
+  return own ? depth : kOtherRegion;
 }
 
 void MapColors::find(std::size_t optic, MapQueries& queries, MapAnswers& answers) const {
@@ -94,7 +116,7 @@ void MapColors::find(std::size_t optic, MapQueries& queries, MapAnswers& answers
     find_places(map, queries, p);
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < kLanes; ++i) {
-        p.depth[k][i] = depths_[map.first + p.index[k][i]];
+        p.depth[k][i] = clip_depth(map, depths_[map.first + p.index[k][i]]);
         p.color[k][i] = colors_[map.first + p.index[k][i]];
       }
     MapAnswers of_map;
@@ -137,7 +159,7 @@ template <bool kPerspective>
     const float column = m.scale_x * (x * per_depth) + m.shift_x,
                 row = m.scale_y * (y * per_depth) + m.shift_y;
     // The map has to see the side that the ray meets. A parallel map shows the sky of one direction.
-    const float side = (kPerspective ? height : nz) * facing;
+    const float side = m.sense * (kPerspective ? height : nz) * facing;
     const int seen = sky ? int(kPerspective) : int(side > 0);
     const int possible = int(q.wanted[i] != 0) & seen & int(!kPerspective || z > 0) & int(column >= 0) &
                          int(row >= 0) & int(column <= wide) & int(row <= high);
@@ -154,7 +176,7 @@ template <bool kPerspective>
     p.column[i] = possible ? column : 0.0f;
     p.row[i] = possible ? row : 0.0f;
   }
-  const int last_x = m.size.x - 1, last_y = m.size.y - 1, width = m.size.x;
+  const int last_x = m.size.x - 1, last_y = m.size.y - 1, stride = m.stride;
   for (int k = 0; k < 4; ++k) {
     const int right = k % 2, down = k / 2;
     for (int i = 0; i < kLanes; ++i) {
@@ -162,7 +184,7 @@ template <bool kPerspective>
       const int bx = cx < 0 ? 0 : cx > last_x ? last_x : cx, by = cy < 0 ? 0 : cy > last_y ? last_y : cy;
       const float off_x = float(cx) + 0.5f - p.column[i], off_y = float(cy) + 0.5f - p.row[i];
       const float weight = (1 - std::abs(off_x)) * (1 - std::abs(off_y));
-      p.index[k][i] = std::uint32_t(by * width + bx);
+      p.index[k][i] = std::uint32_t(by * stride + bx);
       p.off_x[k][i] = off_x;
       p.off_y[k][i] = off_y;
       p.weight[k][i] = (bx == cx) & (by == cy) ? weight : 0.0f;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "render/src/raster_target.h"
@@ -38,8 +39,8 @@ class MapColors {
  public:
   /// No map. Keeps its memory.
   void clear(std::size_t optics);
-  /// Adds what `target` shows, which was drawn as `view` (sample offset included).
-  void add(std::size_t optic, const RasterView& view, const RasterTarget& target);
+  /// Adds what `target` shows, which was drawn as `views` (sample offset included), each in its place.
+  void add(std::size_t optic, std::span<const RasterView> views, const RasterTarget& target);
 
   /// The colours of what the rays meet, where a map of `optic` has seen it: where at least one of the four
   /// texels around its place lies in the plane of the triangle met and is seen from the same side, or both
@@ -54,11 +55,17 @@ class MapColors {
     bool perspective;
     float scale_x, scale_y, shift_x, shift_y;  ///< texel = scale * slope + shift, slope = (right, up) / depth
     float depth_factor, depth_shift;  ///< depth = factor / (stored - shift); parallel: factor * (...)
+    /// Depths stored for clip depth 0 and 1: only those between them belong to this view.
+    float depth_of_far, depth_of_near;
+    float sense;  ///< 1, or -1 in a zooming region: rays come towards the viewpoint there
     glm::ivec2 size;
+    int stride;         ///< texels from row to row
     std::size_t first;  ///< index of its first texel
   };
   struct Places;
 
+  [[nodiscard]] static Map map_of(const RasterView& view);
+  [[nodiscard]] static float clip_depth(const Map& map, float stored);
   static void find_places(const Map& map, const MapQueries& q, Places& p);
   template <bool kPerspective>
   static void find_places_in(const Map& map, const MapQueries& q, Places& p);

@@ -1,5 +1,6 @@
 #include "render/src/overlay_vertices.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -28,6 +29,18 @@ std::vector<glm::vec3> make_sphere() {
       }
   }
   return triangles;
+}
+
+// A thousandth of the distance lifts lines off the facets that they lie on.
+constexpr float kLineLift = 1e-3f;
+
+/// Hues that follow each other by the golden angle differ as much as they can, however many there are.
+glm::vec3 patch_color(std::size_t patch) {
+  const auto channel = [&](float shift) {
+    const float hue = std::fmod(0.381966f * float(patch) + shift, 1.0f);
+    return std::clamp(std::abs(6 * hue - 3) - 1, 0.0f, 1.0f);
+  };
+  return {channel(0), channel(2.0f / 3), channel(1.0f / 3)};
 }
 
 }  // namespace
@@ -91,18 +104,46 @@ void Overlay::draw_in_scene(const RasterView& view, const GlTexture* clip_depth)
 }
 
 void Overlay::draw_mesh(const RasterView& view, const RasterOptic& optic) {
-  glUseProgram(program(false).id());
-  RasterScene::set_mesh_origin(view, optic);
-  glUniform3f(kColor, 1, 1, 1);
-  // A thousandth of the distance lifts the lines off the facets that they lie on.
-  glUniform1f(kLift, 1e-3f);
-  glVertexAttrib4f(kBallAttribute, 0, 0, 0, 1);
   // Half transparent, so that the balls which the vertices show stay visible under the lines.
-  glEnable(GL_BLEND);
-  glBlendColor(0, 0, 0, 0.5f);
-  glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+  begin_lines(view, optic, glm::vec3(1), kLineLift, 0.5f);
   optic.draw_edges();
   glDisable(GL_BLEND);
+}
+
+void Overlay::begin_lines(const RasterView& view, const RasterOptic& optic, glm::vec3 color, float lift,
+                          float opacity) {
+  glUseProgram(program(false).id());
+  RasterScene::set_mesh_origin(view, optic);
+  glUniform3f(kColor, color.r, color.g, color.b);
+  glUniform1f(kLift, lift);
+  glVertexAttrib4f(kBallAttribute, 0, 0, 0, 1);
+  glEnable(GL_BLEND);
+  glBlendColor(0, 0, 0, opacity);
+  glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+}
+
+void Overlay::draw_patches(const RasterView& view, const RasterOptic& optic,
+                           std::span<const OverlayLine> viewpoints) {
+  for (std::size_t part = 0; part < optic.part_count(); ++part) {
+    begin_lines(view, optic, patch_color(part), 0.5f * kLineLift, 0.3f);
+    optic.draw_part(part);
+  }
+  begin_lines(view, optic, glm::vec3(1), kLineLift, 1);
+  optic.draw_borders();
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+  for (std::size_t part = 0; part < viewpoints.size(); ++part) {
+    set_lines(viewpoints.subspan(part, 1));
+    glUseProgram(program(false).id());
+    RasterScene::set_mesh_origin(view, line_origin_mm_);
+    const glm::vec3 color = patch_color(part);
+    glUniform3f(kColor, color.r, color.g, color.b);
+    glUniform1f(kLift, 0);
+    glBindVertexArray(line_array_.id());
+    glDrawArrays(GL_LINES, 0, line_vertices_);
+  }
+  set_lines({});
+  glEnable(GL_DEPTH_TEST);
 }
 
 const GlProgram& Overlay::program(bool clip) {

@@ -31,10 +31,16 @@ class Overlay {
 
   /// Draws into the bound target after RasterScene::draw with the same view and `clip_depth`.
   void draw_in_scene(const RasterView& view, const GlTexture* clip_depth);
+  /// The parts of an optic tinted, their borders in white, and, before everything, a line from the middle of
+  /// each to its viewpoint, in the part's colour. Forgets the lines set before.
+  void draw_patches(const RasterView& view, const RasterOptic& optic,
+                    std::span<const OverlayLine> viewpoints);
   /// The mesh of an optic as white lines, to be drawn after the optic itself.
   void draw_mesh(const RasterView& view, const RasterOptic& optic);
 
  private:
+  void begin_lines(const RasterView& view, const RasterOptic& optic, glm::vec3 color, float lift,
+                   float opacity);
   const GlProgram& program(bool clip);
 
   glm::dvec3 origin_mm_{0};  ///< balls are relative to it

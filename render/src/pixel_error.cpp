@@ -31,7 +31,43 @@ std::optional<glm::dvec3> difference(const Frame& f, const std::vector<glm::vec3
   return (high - low) / ((before && after) ? 2.0 : 1.0);
 }
 
+/// The step of the exact point to the nearer of the two neighbours at `stride` that show the same optic and
+/// not the sky: at an outline that is the one on the same surface.
+std::optional<glm::dvec3> step_on_surface(const Frame& f, std::size_t i, int x, int width,
+                                          std::size_t stride) {
+  std::optional<glm::dvec3> nearest;
+  const auto offer = [&](std::size_t j) {
+    if (f.optic_id[j] != f.optic_id[i] || f.position[j].w == 0) return;
+    const glm::dvec3 step = glm::dvec3(f.position[j]) - glm::dvec3(f.position[i]);
+    if (!nearest || glm::length(step) < glm::length(*nearest)) nearest = step;
+  };
+  if (x > 0) offer(i - stride);
+  if (x + 1 < width) offer(i + stride);
+  return nearest;
+}
+
 }  // namespace
+
+bool same_surface(const Frame& reference, const Frame& frame, std::size_t i, const glm::dvec3& shown) {
+  const glm::vec4 &met = reference.position[i], &seen = frame.position[i];
+  if (met.w == 0 || seen.w == 0) return met.w == seen.w;
+  const auto stride = std::size_t(reference.width);
+  const auto dx = step_on_surface(reference, i, int(i % stride), reference.width, 1);
+  const auto dy = step_on_surface(reference, i, int(i / stride), reference.height, stride);
+  if (!dx || !dy) return true;
+  const glm::dvec3 normal = glm::cross(*dx, *dy), d(reference.direction[i]);
+  const double area = glm::length(normal);
+  if (!(area > 0)) return true;
+  const double allowed_rad = std::max(1 / kArcminPerRad, 2 * angle(shown, d));
+  const double distance = glm::distance(glm::dvec3(met), glm::dvec3(reference.surface[i]));
+  const glm::dvec3 off = glm::dvec3(seen) - glm::dvec3(met);
+  double largest = 0;
+  for (int k = 0; k < 3; ++k)
+    largest = std::max({largest, std::abs(double(met[k])), std::abs(double(seen[k]))});
+  constexpr double kRoundings = 8;  // coordinates relative to eye and mesh, distances along rays, planes
+  return std::abs(glm::dot(off, normal / area)) <=
+         allowed_rad * distance + kRoundings * std::numeric_limits<float>::epsilon() * largest;
+}
 
 bool both_touch(const Frame& reference, const Frame& frame, std::size_t i) {
   return touches(reference, reference, i) && touches(reference, frame, i);

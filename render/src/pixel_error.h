@@ -37,4 +37,11 @@ inline constexpr double kArcminPerRad = 60 * 180 / std::numbers::pi;
 [[nodiscard]] std::optional<double> screen_error(const Frame& reference, const Frame& frame, std::size_t i,
                                                  const glm::dvec3& shown);
 
+/// Whether `frame` shows at pixel `i`, in the direction `shown`, the surface that the exact ray meets: what
+/// it shows lies in that surface's tangent plane, which the neighbours' exact points tell, to an arcminute or
+/// twice what the direction is off (a surface may bend between the two points). True where the neighbours
+/// tell nothing.
+[[nodiscard]] bool same_surface(const Frame& reference, const Frame& frame, std::size_t i,
+                                const glm::dvec3& shown);
+
 }  // namespace catoptra::render

@@ -32,42 +32,42 @@ double length_in_map(const optics::VirtualView& view, const PvrrMapSize& size, c
 PvrrFrame::PvrrFrame(const Scene& scene, RasterScene& raster, const optics::RayScene& rays,
                      const cad_import::BoundingBox& bounds)
     : scene_(scene), raster_(raster) {
-  for (std::size_t i = 0; i < scene.optics.size(); ++i) patches_.emplace_back(scene, i, raster, rays, bounds);
+  for (std::size_t i = 0; i < scene.optics.size(); ++i) optics_.emplace_back(scene, i, raster, rays, bounds);
   outside_counter_ =
       make_dynamic_buffer(sizeof(std::uint32_t) * std::max<std::size_t>(1, scene.optics.size()));
 }
 
 void PvrrFrame::optic_changed(std::size_t index, const cad_import::BoundingBox& bounds) {
-  patches_[index].optic_changed();
+  optics_[index].optic_changed();
   bounds_changed(bounds);
 }
 
 void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placement,
                             const cad_import::BoundingBox& bounds) {
-  patches_[index].place(placement);
+  optics_[index].place(placement);
   bounds_changed(bounds);
 }
 
 void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
-  for (PvrrPatch& patch : patches_) {
-    patch.set_bounds(bounds);
-    patch.map_changed();
+  for (PvrrOptic& optic : optics_) {
+    optic.set_bounds(bounds);
+    optic.map_changed();
   }
 }
 
 void PvrrFrame::update(const Camera& camera, const FrameOptions& options) {
   const RasterView view = camera_view(camera, {options.width, options.height});
-  for (PvrrPatch& patch : patches_) patch.update(view, options);
+  for (PvrrOptic& optic : optics_) optic.update(view, options);
 }
 
 void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  for (PvrrPatch& patch : patches_) patch.draw_map(offset_px, geometry, overlay);
+  for (PvrrOptic& optic : optics_) optic.draw_map(offset_px, geometry, overlay);
 }
 
 void PvrrFrame::copy_maps(MapColors& maps) const {
-  maps.clear(patches_.size());
-  for (std::size_t i = 0; i < patches_.size(); ++i)
-    if (patches_[i].faces_eye()) maps.add(i, patches_[i].map().view(), patches_[i].map().target());
+  maps.clear(optics_.size());
+  for (std::size_t i = 0; i < optics_.size(); ++i)
+    if (optics_[i].faces_eye()) maps.add(i, optics_[i].map().views(), optics_[i].map().target());
 }
 
 RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
@@ -80,7 +80,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       picture.begin(options);
       update(camera, options);
       set_overlay(options);
-      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
+      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, optics_.size()), 0);
       update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
     for (int sample = 0; sample < options.samples; ++sample) {
@@ -99,17 +99,17 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.stats.time_ms = {{"trace", trace_ms}, {"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   result.warnings = map_warnings();
-  for (const PvrrPatch& patch : patches_)
-    if (auto warning = patch.warning()) result.warnings.push_back(std::move(*warning));
-  for (std::size_t i = 0; i < patches_.size(); ++i)
-    if (auto warning = region_warning(scene_.optics[i].name, patches_[i].regions()))
+  for (const PvrrOptic& optic : optics_) {
+    if (auto warning = optic.warning()) result.warnings.push_back(std::move(*warning));
+    if (auto warning = region_warning(scene_.optics[optic.index()].name, optic.regions()))
       result.warnings.push_back(std::move(*warning));
+  }
   return result;
 }
 
 std::vector<std::string> PvrrFrame::map_warnings() const {
   std::vector<std::string> warnings;
-  std::vector<std::uint32_t> outside(patches_.size(), 0);
+  std::vector<std::uint32_t> outside(optics_.size(), 0);
   if (!outside.empty())
     glGetNamedBufferSubData(outside_counter_.id(), 0,
                             static_cast<GLsizeiptr>(outside.size() * sizeof(std::uint32_t)), outside.data());
@@ -125,14 +125,15 @@ std::vector<std::string> PvrrFrame::map_warnings() const {
 void PvrrFrame::set_overlay(const FrameOptions& options) {
   std::vector<OverlayBall> balls;
   std::vector<OverlayLine> lines;
-  for (const PvrrPatch& patch : patches_) {
-    if (!patch.faces_eye()) continue;
-    for (const optics::VertexHit& hit : patch.hits()) {
+  for (const PvrrOptic& optic : optics_) {
+    if (!optic.faces_eye()) continue;
+    for (std::size_t i = 0; i < optic.hits().size(); ++i) {
+      const optics::VertexHit& hit = optic.hits()[i];
       if (!passes(hit)) continue;
-      const optics::Placement& at = patch.placement();
+      const optics::Placement& at = optic.placement();
       if (options.overlay_vertices && hit.scene_hit)
         balls.push_back({at.point(hit.hit_point_mm),
-                         length_in_map(patch.view(), patch.map().size(), hit.hit_point_mm, kBallRadiusPx)});
+                         length_in_map(optic.view(i), optic.map_size(i), hit.hit_point_mm, kBallRadiusPx)});
       if (options.overlay_rays)
         lines.push_back({at.point(hit.surface_point_mm),
                          at.point(hit.scene_hit ? hit.hit_point_mm
@@ -150,39 +151,44 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   target.bind(geometry);
   raster_.clear(camera, pass);
   // First the optics, which hide much and cost little.
-  for (std::size_t i = 0; i < patches_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
+  for (std::size_t i = 0; i < optics_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
   raster_.draw_all(camera, pass);
-  if (!options.overlay_vertices && !options.overlay_rays) return;
+  if (!options.overlay_vertices && !options.overlay_rays && !options.overlay_patches) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   target.bind(false);
   overlay_.draw_in_scene(camera, nullptr);
+  if (options.overlay_patches)
+    for (const PvrrOptic& optic : optics_)
+      if (optic.faces_eye()) overlay_.draw_patches(camera, optic.seen_surface(), optic.viewpoint_lines());
   if (!options.overlay_vertices) return;
-  for (const PvrrPatch& patch : patches_) overlay_.draw_mesh(camera, patch.seen_surface());
+  for (const PvrrOptic& optic : optics_) overlay_.draw_mesh(camera, optic.seen_surface());
 }
 
 void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const RasterView& camera,
                            glm::dvec2 offset_px, bool geometry) {
-  const PvrrPatch& patch = patches_[index];
+  const PvrrOptic& drawn = optics_[index];
   const optics::Optic& optic = scene_.optics[index];
   glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, outside_counter_.id(),
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
   if (optic.kind == optics::OpticKind::lens) {
-    patch.lens().draw(camera, target, geometry, LensLook::map, lens_programs_, optic, index,
-                      scene_.environment.ambient,
-                      [&](bool with_geometry) { patch.set_map(offset_px, with_geometry); });
+    drawn.lens().draw(
+        camera, target, geometry, LensLook::map, lens_programs_, optic, index, scene_.environment.ambient,
+        [&](std::size_t patch, bool with_geometry) { drawn.set_map(patch, offset_px, with_geometry); });
     return;
   }
   glUseProgram(mirror_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, patch.seen_surface());
+  RasterScene::set_mesh_origin(camera, drawn.seen_surface());
   set_optic_uniforms(optic, index);
-  patch.set_map(offset_px, geometry);
-  patch.seen_surface().draw_surface();
+  for (std::size_t patch = 0; patch < drawn.seen_surface().part_count(); ++patch) {
+    drawn.set_map(patch, offset_px, geometry);
+    drawn.seen_surface().draw_part(patch);
+  }
 }
 
 FrameStats PvrrFrame::statistics() const {
   FrameStats stats;
-  for (const PvrrPatch& patch : patches_) {
-    stats.optics.push_back(patch.statistics());
+  for (const PvrrOptic& optic : optics_) {
+    stats.optics.push_back(optic.statistics());
     stats.rays += stats.optics.back().scene_rays;
   }
   return stats;

@@ -8,7 +8,7 @@
 #include "render/frame.h"
 #include "render/src/map_colors.h"
 #include "render/src/overlay_vertices.h"
-#include "render/src/pvrr_patch.h"
+#include "render/src/pvrr_optic.h"
 #include "render/src/raster_lens.h"
 #include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
@@ -52,7 +52,7 @@ class PvrrFrame {
 
   const Scene& scene_;
   RasterScene& raster_;
-  std::vector<PvrrPatch> patches_;  ///< one per optic
+  std::vector<PvrrOptic> optics_;  ///< one per optic
   Overlay overlay_;
   GlBuffer outside_counter_;
   std::map<bool, GlProgram> mirror_programs_;

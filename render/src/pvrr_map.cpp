@@ -53,17 +53,17 @@ PvrrMapSize choose_map_size(const tessellate::OpticArrays& mesh, std::span<const
   return size;
 }
 
-void PvrrMap::resize(const PvrrMapSize& size, bool geometry) {
-  size_ = size;
-  RasterTarget::fit(target_, size.texels, geometry);
-  if (optic_depth_ && view_.size == size.texels) return;
-  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size.texels.x, size.texels.y, 1, false);
+void PvrrMap::resize(const AtlasLayout& layout, bool geometry) {
+  layout_ = layout;
+  RasterTarget::fit(target_, layout.texels, geometry);
+  if (optic_depth_ && optic_depth_size_ == layout.texels) return;
+  optic_depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, layout.texels.x, layout.texels.y, 1, false);
   optic_depth_framebuffer_ = make_framebuffer({}, &optic_depth_);
-  view_.size = size.texels;
+  optic_depth_size_ = layout.texels;
 }
 
 void PvrrMap::set_empty(bool geometry) {
-  resize({}, geometry);
+  resize(lay_out(std::vector{PvrrMapSize().texels}), geometry);
   const glm::vec4 black(0, 0, 0, 1);
   for (const GlTexture* texture : {&target_->color(), &target_->position(), &target_->detail()})
     if (*texture) glClearTexImage(texture->id(), 0, GL_RGBA, GL_FLOAT, &black.x);
@@ -73,40 +73,55 @@ void PvrrMap::bind_optic_depth() const {
   glBindFramebuffer(GL_FRAMEBUFFER, optic_depth_framebuffer_.id());
 }
 
-void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  view_ = map_view(view, size_.texels, offset_px);
+void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
+                   const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px,
+                   bool geometry, Overlay* overlay) {
+  const AtlasPlace& place = layout_.places[patch];
+  const glm::ivec2 size = place.texels + 2 * place.guard;
+  const optics::VirtualView guarded = with_guard(view, place.texels, place.guard);
+  views_.resize(layout_.places.size());
+  RasterView& ahead = views_[patch].view;
+  ahead = map_view(guarded, size, offset_px);
+  ahead.corner = place.corner;
+  // What is cleared is the patch's part alone.
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(place.corner.x, place.corner.y, size.x, size.y);
   RasterPass pass;
   pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
-  pass.level_bias = static_cast<float>(std::log2(size_.texels_per_pixel));
+  pass.level_bias = static_cast<float>(std::log2(texels_per_pixel));
   pass.draw_optics = true;
   pass.except = optic;
   if (!view.beyond_viewpoint) {
     bind_optic_depth();
-    scene.draw_optic_depth(view_, surface);
+    scene.draw_optic_depth(ahead, surface);
     pass.clip_depth = &optic_depth_;
     // A little farther than the surface is, so that rounding decides nothing.
-    const double farthest = surface.farthest_mm(view_);
+    const double farthest = surface.farthest_mm(ahead);
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   }
   target_->bind(geometry);
-  scene.draw(view_, pass);
+  scene.draw(ahead, pass);
   if (overlay) {
     target_->bind(false);
-    overlay->draw_in_scene(view_, pass.clip_depth);
+    overlay->draw_in_scene(ahead, pass.clip_depth);
   }
-  zooming_.reset();
-  if (view.zooms()) draw_zooming(scene, surface, view, offset_px, pass, overlay);
+  views_[patch].zooming.reset();
+  if (view.zooms()) {
+    RasterView back = zooming_view(guarded, size, offset_px);
+    back.corner = place.corner;
+    if (scene.sees_anything(back, pass)) {
+      views_[patch].zooming = back;
+      draw_zooming(scene, surface, back, kBeside * view.zooming_far_mm, pass, overlay);
+    }
+  }
+  glDisable(GL_SCISSOR_TEST);
 }
 
-void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const optics::VirtualView& view,
-                           glm::dvec2 offset_px, RasterPass pass, Overlay* overlay) {
-  const RasterView back = zooming_view(view, size_.texels, offset_px);
-  if (!scene.sees_anything(back, pass)) return;
-  zooming_ = back;
+void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const RasterView& back,
+                           double beside_mm, RasterPass pass, Overlay* overlay) {
   bind_optic_depth();
-  scene.draw_zooming_optic_depth(back, surface, kBeside * view.zooming_far_mm);
+  scene.draw_zooming_optic_depth(back, surface, beside_mm);
   pass.clip_depth = &optic_depth_;
   pass.clip_reach_mm = optics::kInfinity;
   target_->bind(pass.geometry);
@@ -114,6 +129,15 @@ void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const
   if (!overlay) return;
   target_->bind(false);
   overlay->draw_in_scene(back, pass.clip_depth);
+}
+
+std::vector<RasterView> PvrrMap::views() const {
+  std::vector<RasterView> views;
+  for (const PatchViews& patch : views_) {
+    views.push_back(patch.view);
+    if (patch.zooming) views.push_back(*patch.zooming);
+  }
+  return views;
 }
 
 }  // namespace catoptra::render

@@ -1,13 +1,15 @@
-// PVRR pass 1: the reflection map of one optic (paper 3.1, step 2; design 2.3 and 2.6).
+// PVRR pass 1: the reflection maps of one optic, one per patch (paper 3.1, step 2; design 2.3 and 2.6).
 #pragma once
 
 #include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "optics/virtual_view.h"
 #include "render/src/overlay_vertices.h"
+#include "render/src/pvrr_atlas.h"
 #include "render/src/raster_scene.h"
 #include "render/src/raster_target.h"
 
@@ -40,8 +42,8 @@ struct PvrrMapSize {
 
 class PvrrMap {
  public:
-  /// Renews the textures where their size is not that of `size`.
-  void resize(const PvrrMapSize& size, bool geometry);
+  /// Renews the textures where their size is not that of the layout.
+  void resize(const AtlasLayout& layout, bool geometry);
 
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
@@ -54,29 +56,33 @@ class PvrrMap {
   /// meets it first (design 2.10), and both have the same map coordinates. What lies behind the optic is cut
   /// by its depth; so is, beside the optic, the last tenth of the way back to it: there stands its own frame,
   /// which rays that leave near its border do not meet.
-  /// `offset_px`: place of the samples within a texel.
-  void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  /// `patch`: its place in the layout; `offset_px`: place of the samples within a texel.
+  void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
+            const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px, bool geometry,
+            Overlay* overlay);
 
-  /// The views of the last draw(). Depths of both are in the target, see zooming_view(); the zooming region's
-  /// is there where anything may be seen in it.
-  [[nodiscard]] const RasterView& view() const { return view_; }
-  [[nodiscard]] const std::optional<RasterView>& zooming() const { return zooming_; }
+  /// The views of the last draw() of each patch, in its place of the target, and those of zooming regions in
+  /// which anything may be seen. Depths of both are in the target, see zooming_view().
+  [[nodiscard]] std::vector<RasterView> views() const;
 
   [[nodiscard]] const RasterTarget& target() const { return *target_; }
-  [[nodiscard]] const PvrrMapSize& size() const { return size_; }
+  [[nodiscard]] const AtlasLayout& layout() const { return layout_; }
 
  private:
+  struct PatchViews {
+    RasterView view;
+    std::optional<RasterView> zooming;
+  };
   void bind_optic_depth() const;
-  void draw_zooming(RasterScene& scene, const RasterOptic& surface, const optics::VirtualView& view,
-                    glm::dvec2 offset_px, RasterPass pass, Overlay* overlay);
+  void draw_zooming(RasterScene& scene, const RasterOptic& surface, const RasterView& back, double beside_mm,
+                    RasterPass pass, Overlay* overlay);
 
-  PvrrMapSize size_;
+  AtlasLayout layout_;
   std::unique_ptr<RasterTarget> target_;
   GlTexture optic_depth_;
+  glm::ivec2 optic_depth_size_{0, 0};
   GlFramebuffer optic_depth_framebuffer_;
-  RasterView view_;
-  std::optional<RasterView> zooming_;
+  std::vector<PatchViews> views_;  ///< by patch
 };
 
 }  // namespace catoptra::render

@@ -16,16 +16,6 @@ constexpr int kLargest = 4096;
 // the map.
 constexpr double kLeastDepth = 0.1;
 
-bool is_plane(const optics::Optic& optic) {
-  const auto& vertices = optic.mesh.vertices;
-  if (vertices.empty()) return false;
-  const glm::dvec3 &point = vertices[0].position_mm, &normal = vertices[0].normal;
-  return std::all_of(vertices.begin(), vertices.end(), [&](const auto& v) {
-    return std::abs(glm::dot(v.position_mm - point, normal)) < kFlatness &&
-           glm::length(v.normal - normal) < kNormalSpread;
-  });
-}
-
 /// Pixels that the optic's box covers, clipped to the picture, with a border of one: begin and end corner.
 struct PixelBox {
   glm::dvec2 begin, end;
@@ -63,6 +53,16 @@ double farthest_distance(const glm::dvec3& from, const cad_import::BoundingBox& 
 }
 
 }  // namespace
+
+bool is_plane(const optics::Optic& optic) {
+  const auto& vertices = optic.mesh.vertices;
+  if (vertices.empty()) return false;
+  const glm::dvec3 &point = vertices[0].position_mm, &normal = vertices[0].normal;
+  return std::all_of(vertices.begin(), vertices.end(), [&](const auto& v) {
+    return std::abs(glm::dot(v.position_mm - point, normal)) < kFlatness &&
+           glm::length(v.normal - normal) < kNormalSpread;
+  });
+}
 
 std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView& camera,
                                     const optics::VirtualView& fitted,

@@ -18,6 +18,9 @@ struct PlaneView {
   glm::ivec2 texels;  ///< the pixels that the optic's box covers on the screen, and a border of one
 };
 
+/// All vertices within 1e-6 mm of one plane, normals within 1e-9 rad.
+[[nodiscard]] bool is_plane(const optics::Optic& optic);
+
 /// Nullopt where the optic is not plane (vertices within 1e-6 mm of one plane, normals within 1e-9 rad),
 /// reaches beside or behind the eye, is not on the screen, or would need more than 4096 texels a side.
 /// `camera`: without sample offset; `fitted`: the optic's view from make_virtual_view, whose viewpoint is

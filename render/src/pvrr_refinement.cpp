@@ -8,9 +8,11 @@
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <numeric>
+#include <utility>
 
-#include "optics/map_coordinates.h"
 #include "render/src/lens_rays.h"
+#include "render/src/patch_coordinates.h"
+#include "render/src/patch_mesh.h"
 
 namespace catoptra::render {
 namespace {
@@ -118,9 +120,10 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
                         ? optics::side_of(request.optic, request.entered)
                         : optics::LensSideView{request.optic.faces, &request.optic.mesh};
   if (!mesh_ || side_ != request.entered) {
-    mesh_.emplace(side.faces, *side.mesh);
+    mesh_.emplace(side.faces, request.mesh);
     side_ = request.entered;
     known_.clear();
+    twin_.clear();
     was_split_.clear();
     nodes_.clear();
   } else {
@@ -131,6 +134,8 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
   eye_mm_ = request.eye_mm;
   hits_.assign(request.hits.begin(), request.hits.end());
   coordinates_.assign(request.coordinates.begin(), request.coordinates.end());
+  patch_.assign(request.patch.begin(), request.patch.end());
+  patch_.resize(hits_.size(), 0);
   traced_rays_ = scene_rays_ = 0;
   error_left_px_ = 0;
 }
@@ -154,26 +159,38 @@ void PvrrRefinement::refine(const RefinementRequest& request) {
   if (changed_) nodes_.assign(nodes.begin(), nodes.end());
 }
 
+void PvrrRefinement::find_twins() {
+  const auto edges = mesh_->new_edges();
+  for (auto node = static_cast<std::uint32_t>(twin_.size()); node < mesh_->node_count(); ++node)
+    twin_.push_back(node);
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i].group != edges[i - 1].group) continue;
+    const auto &a = mesh_->middle(edges[i - 1]), &b = mesh_->middle(edges[i]);
+    if (a.position_mm == b.position_mm && a.normal == b.normal && a.face == b.face && a.uv == b.uv)
+      twin_[edges[i].node] = twin_[edges[i - 1].node];
+  }
+}
+
 void PvrrRefinement::trace_middles(const RefinementRequest& request, std::span<const char> asked) {
   const auto edges = mesh_->new_edges();
   rays_.resize(mesh_->node_count());
   known_.resize(mesh_->node_count(), 0);
+  find_twins();
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < edges.size(); ++i)
-    if (asked[i] && !known_[edges[i].node]) missing.push_back(i);
+    if (asked[i] && !std::exchange(known_[twin_[edges[i].node]], char(1))) missing.push_back(i);
   traced_rays_ += missing.size();
   const bool lens = request.optic.kind == optics::OpticKind::lens;
   const auto indices = lens ? optics::lens_indices(request.optic, samples_of(request.optic)[0].wavelength_nm)
                             : optics::LensIndices();
-  // Every node belongs to one edge, so that no two tasks write the same entry.
+  // Twins are traced once, so that no two tasks write the same entry.
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, missing.size(), kEdgesPerTask), [&](const auto& some) {
     for (std::size_t k = some.begin(); k < some.end(); ++k) {
       const EdgeMiddle& edge = edges[missing[k]];
       const auto& vertex = mesh_->middle(edge);
-      rays_[edge.node] = lens ? optics::refract_vertex(vertex, request.optic, *request.tracer,
-                                                       request.entered, indices, eye_mm_)
-                              : optics::reflect_vertex(vertex, request.optic, eye_mm_);
-      known_[edge.node] = 1;
+      rays_[twin_[edge.node]] = lens ? optics::refract_vertex(vertex, request.optic, *request.tracer,
+                                                              request.entered, indices, eye_mm_)
+                                     : optics::reflect_vertex(vertex, request.optic, eye_mm_);
     }
   });
 }
@@ -195,14 +212,16 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
   std::vector<double> near(edges.size(), 0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto [a, b] = edges[i].ends;
-    asked[i] = asked[i] && passes(rays_[edges[i].node]);
+    asked[i] = asked[i] && passes(rays_[twin_[edges[i].node]]);
     if (!asked[i]) continue;
     const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
     near[i] = 0.5 * (nearness(hits_[a]) + nearness(hits_[b]));
-    rays[i] = ray_through(rays_[edges[i].node], point - mesh_->middle(edges[i]).position_mm, near[i]);
+    rays[i] = ray_through(rays_[twin_[edges[i].node]], point - mesh_->middle(edges[i]).position_mm, near[i]);
     shown[i] = 0.5 * (coordinates_[a] + coordinates_[b]);
   }
-  const auto exact = optics::map_coordinates_like(shown, rays, request.view);
+  std::vector<std::uint32_t> patch(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) patch[i] = patch_[edges[i].ends[0]];
+  const auto exact = patch_coordinates_like(shown, rays, patch, request.views);
 
   std::vector<double> errors(edges.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), kEdgesPerTask), [&](const auto& some) {
@@ -213,7 +232,7 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
       const glm::dvec2 off = glm::dvec2(shown[i]) / shown[i].z - glm::dvec2(exact[i]) / exact[i].z;
       const double error =
           in_pixels(place_of(request.camera, point), rays[i], near[i], glm::distance(point, eye_mm_),
-                    angle_of(request.view, rays[i], near[i], off));
+                    angle_of(request.views[patch[i]], rays[i], near[i], off));
       // No error is larger than the edge: it is what an edge next to a caustic or the map's horizon gives.
       const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b]));
       errors[i] = std::isfinite(error) ? std::min(error, length_px) : length_px;
@@ -262,17 +281,25 @@ void PvrrRefinement::add_vertices(const RefinementRequest& request) {
   const auto parents = mesh_->parents();
   const auto nodes = mesh_->nodes();
   const std::size_t base = request.hits.size(), known = hits_.size(), count = nodes.size();
-  std::vector<VertexHit> added;
+  std::vector<VertexHit> distinct;
+  std::vector<std::uint32_t> place;
   std::vector<glm::dvec3> between;
   for (std::size_t i = known; i < count; ++i) {
     // What comes along because the face at the other side of a crease is split may show nothing.
-    added.push_back(known_[nodes[i]] ? rays_[nodes[i]] : VertexHit{});
+    const std::uint32_t node = twin_[nodes[i]];
+    // Twins come one after the other.
+    if (i == known || node != twin_[nodes[i - 1]])
+      distinct.push_back(known_[node] ? rays_[node] : VertexHit{});
+    place.push_back(static_cast<std::uint32_t>(distinct.size() - 1));
     const auto [a, b] = parents[i - base];
     between.push_back(0.5 * (coordinates_[a] + coordinates_[b]));
+    patch_.push_back(patch_[a]);
   }
-  scene_rays_ += added.size();
-  added = request.with_scene_hits(std::move(added));
-  const auto coordinates = optics::map_coordinates_like(between, added, request.view);
+  scene_rays_ += distinct.size();
+  distinct = request.with_scene_hits(std::move(distinct));
+  const std::vector<VertexHit> added = gathered(std::span<const VertexHit>(distinct), place);
+  const auto coordinates =
+      patch_coordinates_like(between, added, std::span(patch_).subspan(known), request.views);
   hits_.insert(hits_.end(), added.begin(), added.end());
   coordinates_.insert(coordinates_.end(), coordinates.begin(), coordinates.end());
 }

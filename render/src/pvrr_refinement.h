@@ -22,11 +22,13 @@ inline constexpr std::size_t kMostRefinedVertices = 20000;
 /// What is known at the vertices of the mesh as tessellated. Everything in the optic's own frame.
 struct RefinementRequest {
   const optics::Optic& optic;
+  const tessellate::OpticArrays& mesh;  ///< of the mirror, or of the side entered, cut into patches
   optics::LensSide entered = optics::LensSide::front;  ///< of a lens
   const optics::LensTracer* tracer = nullptr;          ///< of a lens
   std::span<const optics::VertexHit> hits;             ///< of a lens at the reference wavelength
   std::span<const glm::dvec3> coordinates;             ///< homogeneous map coordinates
-  const optics::VirtualView& view;
+  std::span<const optics::VirtualView> views;          ///< per patch
+  std::span<const std::uint32_t> patch;                ///< per vertex; empty: all belong to the first
   glm::dvec3 eye_mm{0};  ///< where the rays were traced from: the camera's place but for rounding
   const RasterView& camera;
   double max_error_px = 0.5;
@@ -50,6 +52,7 @@ class PvrrRefinement {
   /// One per vertex of mesh(): those given, and the same of the new ones.
   [[nodiscard]] std::span<const optics::VertexHit> hits() const { return hits_; }
   [[nodiscard]] std::span<const glm::dvec3> coordinates() const { return coordinates_; }
+  [[nodiscard]] std::span<const std::uint32_t> patch() const { return patch_; }
 
   /// What the last refine() has cost: rays reflected or refracted at the middles of edges, rays sent into the
   /// scene from those that became vertices.
@@ -61,6 +64,7 @@ class PvrrRefinement {
  private:
   void prepare(const RefinementRequest& request);
   [[nodiscard]] std::vector<double> edge_errors(const RefinementRequest& request);
+  void find_twins();
   void trace_middles(const RefinementRequest& request, std::span<const char> asked);
   [[nodiscard]] std::vector<char> choose(const RefinementRequest& request, std::span<const double> errors);
   void keep_to_limit(std::vector<std::size_t>& chosen, std::span<const double> errors);
@@ -74,9 +78,13 @@ class PvrrRefinement {
   glm::dvec3 eye_mm_{0};
   std::vector<optics::VertexHit> rays_;  ///< per node; for this eye, where known_
   std::vector<char> known_, was_split_;  ///< per node
+  /// Per node, the first at the same place of the surface: patches that share an edge share the ray at its
+  /// middle, and rays_ and known_ are those of that node.
+  std::vector<std::uint32_t> twin_;
 
   std::vector<optics::VertexHit> hits_;
   std::vector<glm::dvec3> coordinates_;
+  std::vector<std::uint32_t> patch_;
   std::size_t traced_rays_ = 0, scene_rays_ = 0;
   double error_left_px_ = 0;
 };

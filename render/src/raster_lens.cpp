@@ -75,7 +75,7 @@ void RasterLens::set_shown(const RasterOptic& side, const LensMask& mask, const 
 
 void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool geometry, LensLook look,
                       LensPrograms& programs, const optics::Optic& lens, std::size_t index, float ambient,
-                      const std::function<void(bool geometry)>& set_look) const {
+                      const SetLook& set_look) const {
   const glm::vec3 blocked_color = ambient * lens.rim_color;
   for (std::size_t b = 0; b < batches_.size(); ++b) {
     const Batch& batch = batches_[b];
@@ -92,9 +92,11 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
     if (look == LensLook::map) glUniform1i(kCounts, b == 0);
     glUniformMatrix3fv(kWeight, GLsizei(batch.weights.size()), GL_FALSE, &batch.weights[0][0].x);
     glBindTextureUnit(kMaskUnit, mask_->texture().id());
-    set_look(geometry && b == 0);
     if (geometry && b == 0 && look == LensLook::map) glUniform1i(kGeometrySample, 0);
-    side_->draw_triangles(batch.array);
+    for (std::size_t part = 0; part < side_->part_count(); ++part) {
+      set_look(part, geometry && b == 0);
+      side_->draw_part(part, batch.array);
+    }
   }
   if (batches_.size() < 2) return;
   glDepthFunc(GL_GREATER);
@@ -103,8 +105,7 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
 }
 
 void RasterLens::draw_geometry(const RasterView& camera, const RasterTarget& target, std::size_t sample,
-                               LensPrograms& programs, std::size_t index,
-                               const std::function<void(bool geometry)>& set_look) const {
+                               LensPrograms& programs, std::size_t index, const SetLook& set_look) const {
   const Batch& batch = batches_[sample / kSamplesPerDraw];
   target.bind(true);
   glColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -115,8 +116,10 @@ void RasterLens::draw_geometry(const RasterView& camera, const RasterTarget& tar
   glUniform1i(kCounts, 0);
   glUniform1i(kGeometrySample, GLint(sample % kSamplesPerDraw));
   glBindTextureUnit(kMaskUnit, mask_->texture().id());
-  set_look(true);
-  side_->draw_triangles(batch.array);
+  for (std::size_t part = 0; part < side_->part_count(); ++part) {
+    set_look(part, true);
+    side_->draw_part(part, batch.array);
+  }
   glDepthFunc(GL_GREATER);
   glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }

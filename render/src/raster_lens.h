@@ -39,16 +39,17 @@ class RasterLens {
                  const std::vector<std::vector<glm::dvec3>>& shown);
 
   /// Adds `lens`, number `index`, to what `target` (bound) shows from `camera`; geometry is that of the first
-  /// sample. `set_look` sets the uniforms and textures of the look for the program in use.
+  /// sample. `set_look` sets the uniforms and textures of the look for the program in use, for a part of the
+  /// side's surface (RasterOptic::set_parts).
+  using SetLook = std::function<void(std::size_t part, bool geometry)>;
   void draw(const RasterView& camera, const RasterTarget& target, bool geometry, LensLook look,
             LensPrograms& programs, const optics::Optic& lens, std::size_t index, float ambient,
-            const std::function<void(bool geometry)>& set_look) const;
+            const SetLook& set_look) const;
 
   /// Writes the geometry of sample number `sample` of the rays in place of the first one's, where draw() has
   /// drawn the lens with geometry into `target`; look: map. Colour and depth stay.
   void draw_geometry(const RasterView& camera, const RasterTarget& target, std::size_t sample,
-                     LensPrograms& programs, std::size_t index,
-                     const std::function<void(bool geometry)>& set_look) const;
+                     LensPrograms& programs, std::size_t index, const SetLook& set_look) const;
 
   [[nodiscard]] std::size_t sample_count() const;
 

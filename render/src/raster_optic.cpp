@@ -25,7 +25,8 @@ double radius_about(const tessellate::OpticArrays& mesh, const glm::dvec3& cente
   return radius;
 }
 
-std::vector<std::uint32_t> unique_edges(const tessellate::OpticArrays& mesh) {
+/// Of all triangles, or those that belong to one triangle alone.
+std::vector<std::uint32_t> unique_edges(const tessellate::OpticArrays& mesh, bool borders) {
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles)
@@ -34,12 +35,15 @@ std::vector<std::uint32_t> unique_edges(const tessellate::OpticArrays& mesh) {
       edges.emplace_back(a, b);
     }
   std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<std::uint32_t> indices;
   indices.reserve(2 * edges.size());
-  for (const auto& [a, b] : edges) {
-    indices.push_back(a);
-    indices.push_back(b);
+  for (auto edge = edges.begin(); edge != edges.end();) {
+    const auto next = std::find_if(edge, edges.end(), [&](const Edge& e) { return e != *edge; });
+    if (!borders || next == edge + 1) {
+      indices.push_back(edge->first);
+      indices.push_back(edge->second);
+    }
+    edge = next;
   }
   return indices;
 }
@@ -129,7 +133,7 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt)
   triangles.reserve(3 * mesh.triangles.size());
   for (const auto& t : mesh.triangles)
     triangles.insert(triangles.end(), t.vertices.begin(), t.vertices.end());
-  const std::vector<std::uint32_t> edges = unique_edges(mesh);
+  const std::vector<std::uint32_t> edges = unique_edges(mesh, false), borders = unique_edges(mesh, true);
   const std::vector<Vertex> skirt = with_skirt ? make_skirt(mesh, center_mm_) : std::vector<Vertex>();
 
   for (const Vertex& vertex : vertices) points_.push_back(vertex.position);
@@ -139,14 +143,18 @@ RasterOptic::RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt)
   map_coordinates_ = make_dynamic_buffer(vertices.size() * sizeof(glm::vec3));
   triangles_ = make_static_buffer(std::as_bytes(std::span(triangles)));
   edges_ = make_static_buffer(std::as_bytes(std::span(edges)));
+  borders_ = make_static_buffer(std::as_bytes(std::span(borders)));
   skirt_vertices_ = make_static_buffer(std::as_bytes(std::span(skirt)));
   triangle_indices_ = static_cast<GLsizei>(triangles.size());
+  part_begins_ = {0, triangle_indices_};
   edge_indices_ = static_cast<GLsizei>(edges.size());
+  border_indices_ = static_cast<GLsizei>(borders.size());
   skirt_vertex_count_ = static_cast<GLsizei>(skirt.size());
 
   surface_array_ = make_array();
   bind_attributes(surface_array_, 1, map_coordinates_, sizeof(glm::vec3), {{2, 3, 0}});
   edge_array_ = array_of(edges_, vertices_);
+  border_array_ = array_of(borders_, vertices_);
   skirt_array_ = array_of({}, skirt_vertices_);
 }
 
@@ -170,17 +178,31 @@ void RasterOptic::set_map_coordinates(std::span<const glm::dvec3> coordinates) {
 }
 
 void RasterOptic::draw_surface() const {
-  draw_triangles(surface_array_);
+  glBindVertexArray(surface_array_.id());
+  glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
 }
 
-void RasterOptic::draw_triangles(const GlVertexArray& array) const {
+void RasterOptic::set_parts(std::span<const std::size_t> triangles) {
+  part_begins_ = {0};
+  for (const std::size_t count : triangles)
+    part_begins_.push_back(part_begins_.back() + static_cast<GLsizei>(3 * count));
+}
+
+void RasterOptic::draw_part(std::size_t part, const GlVertexArray& array) const {
   glBindVertexArray(array.id());
-  glDrawElements(GL_TRIANGLES, triangle_indices_, GL_UNSIGNED_INT, nullptr);
+  const GLsizei begin = part_begins_[part];
+  glDrawElements(GL_TRIANGLES, part_begins_[part + 1] - begin, GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(std::size_t(begin) * sizeof(std::uint32_t)));
 }
 
 void RasterOptic::draw_edges() const {
   glBindVertexArray(edge_array_.id());
   glDrawElements(GL_LINES, edge_indices_, GL_UNSIGNED_INT, nullptr);
+}
+
+void RasterOptic::draw_borders() const {
+  glBindVertexArray(border_array_.id());
+  glDrawElements(GL_LINES, border_indices_, GL_UNSIGNED_INT, nullptr);
 }
 
 void RasterOptic::draw_surface_with_skirt() const {

@@ -19,20 +19,28 @@ class RasterOptic {
   /// Without a skirt, draw_surface_with_skirt() draws the surface alone.
   explicit RasterOptic(const tessellate::OpticArrays& mesh, bool with_skirt = true);
 
+  /// Divides the surface into parts of so many triangles, which follow each other; without this it is one
+  /// part.
+  void set_parts(std::span<const std::size_t> triangles);
+  [[nodiscard]] std::size_t part_count() const { return part_begins_.size() - 1; }
+
   /// Homogeneous map coordinates (s q, t q, q), one per vertex of the mesh.
   void set_map_coordinates(std::span<const glm::dvec3> coordinates);
 
   /// Each draws with whatever program is in use, which must have been given the optic as its mesh
   /// (RasterScene::set_mesh_origin).
   void draw_surface() const;
-  /// The mesh's edges as lines.
+  /// The mesh's edges as lines; those with one triangle alone, which are the borders of surface and parts.
   void draw_edges() const;
+  void draw_borders() const;
   /// The surface, continued outwards along the tangent plane at its border by its own radius.
   void draw_surface_with_skirt() const;
 
   /// The triangles' vertices and positions and normals, at binding point 0, for further attributes.
   [[nodiscard]] GlVertexArray make_array() const;
-  void draw_triangles(const GlVertexArray& array) const;
+  /// Part `part` alone.
+  void draw_part(std::size_t part) const { draw_part(part, surface_array_); }
+  void draw_part(std::size_t part, const GlVertexArray& array) const;
 
   /// In the optic's own frame, as the mesh is.
   [[nodiscard]] const glm::dvec3& center_mm() const { return center_mm_; }
@@ -48,9 +56,10 @@ class RasterOptic {
   glm::dvec3 center_mm_{0};
   optics::Placement placement_;
   std::vector<glm::vec3> points_;  ///< of surface and skirt, relative to the centre
-  GlBuffer vertices_, map_coordinates_, triangles_, edges_, skirt_vertices_;
-  GlVertexArray surface_array_, edge_array_, skirt_array_;
-  GLsizei triangle_indices_ = 0, edge_indices_ = 0, skirt_vertex_count_ = 0;
+  GlBuffer vertices_, map_coordinates_, triangles_, edges_, borders_, skirt_vertices_;
+  GlVertexArray surface_array_, edge_array_, border_array_, skirt_array_;
+  std::vector<GLsizei> part_begins_;  ///< in the triangles' indices, and their end
+  GLsizei triangle_indices_ = 0, edge_indices_ = 0, border_indices_ = 0, skirt_vertex_count_ = 0;
 };
 
 /// The mean of the surface points weighted by area, mm.

@@ -178,7 +178,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   if (sky_) glBindTextureUnit(kSkyUnit, sky_.id());
 
   glClipControl(view.bottom_row_first ? GL_LOWER_LEFT : GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-  glViewport(0, 0, view.size.x, view.size.y);
+  glViewport(view.corner.x, view.corner.y, view.size.x, view.size.y);
   glDepthRange(view.depth_of_far, view.depth_of_near);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);

@@ -18,6 +18,7 @@ struct RasterView {
   glm::dmat3 rotation{1};                     ///< world axes to eye axes
   glm::dmat4 projection{1};                   ///< eye space to clip space
   glm::ivec2 size{1, 1};                      ///< pixels
+  glm::ivec2 corner{0, 0};                    ///< of what is drawn, in the target: column and row
   float depth_of_far = 0, depth_of_near = 1;  ///< what is stored for clip depth 0 and 1; the greater hides
   bool bottom_row_first = false;  ///< row 0 of what is drawn is the bottom one (cube maps), else the top one
 

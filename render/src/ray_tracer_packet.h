@@ -87,8 +87,8 @@ class PacketTracer {
   };
   std::size_t follow_mirrors(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
                              const ChainTask& task, const GeometrySink& sink) const;
-  std::size_t follow_lenses(const PixelPacket& pixels, const Packet& p, std::size_t sample,
-                            const ChainTask& task, RefractedLanes& out, const GeometrySink& sink) const;
+  std::size_t follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample, const ChainTask& task,
+                            RefractedLanes& out, const GeometrySink& sink) const;
   static void write_ends(const PixelPacket& pixels, const MetOptics& met, const ChainEnds& ends,
                          const GeometrySink& sink);
 

@@ -61,12 +61,15 @@ std::size_t PacketTracer::follow_mirrors(const CameraRays& camera, const PixelPa
   const std::size_t rays =
       chains_.follow(from, met, chains_.depth() - 1, task, seen, sink.frame ? &ends : nullptr);
   for (int i = 0; i < kLanes; ++i)
-    if (met.optic[i] >= 0) p.shade.radiance[i] = seen[i];
+    if (met.optic[i] >= 0) {
+      p.shade.radiance[i] = seen[i];
+      p.traced[i] = true;
+    }
   if (sink.frame) write_ends(pixels, met, ends, sink);
   return rays;
 }
 
-std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, const Packet& p, std::size_t sample,
+std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample,
                                         const ChainTask& task, RefractedLanes& out,
                                         const GeometrySink& sink) const {
   LeftOptics left;
@@ -92,7 +95,10 @@ std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, const Packet&
   const std::size_t rays =
       chains_.follow(from, met, chains_.depth() - 1, task, seen, sink.frame ? &ends : nullptr);
   for (int i = 0; i < kLanes; ++i)
-    if (met.optic[i] >= 0) out.shade.radiance[i] = seen[i];
+    if (met.optic[i] >= 0) {
+      out.shade.radiance[i] = seen[i];
+      p.traced[i] = true;
+    }
   if (sink.frame) write_ends(pixels, met, ends, sink);
   return rays;
 }

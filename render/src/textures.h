@@ -14,8 +14,8 @@ struct MipLevel {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Level 0 is the image; each further level is half of the last (rounded down, at least 1) by box filter in linear
-/// light, down to 1 x 1.
+/// Level 0 is the image; each further level is half of the last (rounded down, at least 1) by box filter in
+/// linear light, down to 1 x 1.
 struct MipTexture {
   std::vector<MipLevel> levels;
 };

@@ -53,7 +53,6 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"render", "scene.toml", "-o", "x.png", "--samples", "0"},
       {"render", "scene.toml", "-o", "x.png", "--overlay", "traced"},
       {"render", "scene.toml", "-o", "x.png", "--mode", "pvr"},
-      {"render", "scene.toml", "-o", "x.png", "--overlay", "patches"},
       {"render", "scene.toml", "-o", "x.png", "--resolution", "12"},
       {"compare", "scene.toml", "-o", "out", "--modes", "pvrr,automatic"},
       {"compare", "scene.toml", "-o", "out", "--modes", "raytrace"},

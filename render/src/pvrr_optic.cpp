@@ -1,4 +1,4 @@
-#include "render/src/pvrr_patch.h"
+#include "render/src/pvrr_optic.h"
 
 #include <tbb/parallel_for.h>
 
@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <utility>
 
-#include "optics/map_coordinates.h"
+#include "render/src/patch_coordinates.h"
 #include "render/src/pvrr_plane_view.h"
 
 namespace catoptra::render {
@@ -17,17 +18,13 @@ namespace {
 using optics::OpticKind;
 using optics::VertexHit;
 
-// Border of a lens map, as a share of its width: room for the wavelengths whose border is not sought, and for
-// corners.
-constexpr double kLensMargin = 0.02;
-
 // Share of its distance from the optic by which the eye may be off before rays are traced anew: what is left
 // of a common motion of eye and optic by rounding, in scenes up to 100 km. Rays then are off by 1e-8 rad, a
 // sixth of the step of the floats in which map coordinates are drawn.
 constexpr double kEyeRounding = 1e-8;
 
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
-constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
+constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9, kMapPlace = 10;
 constexpr GLuint kMapColorUnit = 2, kMapPositionUnit = 3, kMapDetailUnit = 4;
 
 void set_columns(GLint location, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -55,25 +52,9 @@ bool same_view(const RasterView& a, const RasterView& b) {
          a.size == b.size;
 }
 
-/// The rays of all wavelengths that a map has to hold, one list after the other. The borders of the others
-/// are those of the reference wavelength within the view's margin.
-std::vector<VertexHit> rays_in_map(const LensRays& rays) {
-  std::vector<VertexHit> all = rays.border;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].scene_hit = rays.hits[0][i].scene_hit;
-    all[i].hit_point_mm = rays.hits[0][i].hit_point_mm;
-  }
-  for (std::size_t k = 1; k < rays.hits.size(); ++k)
-    for (const VertexHit& hit : rays.hits[k]) {
-      all.push_back(hit);
-      all.back().faces_eye = passes(hit);
-    }
-  return all;
-}
-
 }  // namespace
 
-PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
+PvrrOptic::PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
                      const cad_import::BoundingBox& bounds)
     : scene_(scene),
       optic_(scene.optics[optic]),
@@ -82,29 +63,29 @@ PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster,
       rays_(rays),
       bounds_(bounds) {}
 
-void PvrrPatch::optic_changed() {
-  refinement_.forget();
-  refined_surface_.reset();
+void PvrrOptic::optic_changed() {
+  tree_.forget();
+  set_patches({});
+  lens_ = {};
   refined_lens_ = {};
-  refined_from_.reset();
   tracer_.reset();
   traced_from_.reset();
 }
 
-void PvrrPatch::set_bounds(const cad_import::BoundingBox& bounds) {
+void PvrrOptic::set_bounds(const cad_import::BoundingBox& bounds) {
   if (bounds.min == bounds_.min && bounds.max == bounds_.max) return;
   bounds_ = bounds;
   hits_hold_ = false;
 }
 
-void PvrrPatch::place(const optics::Placement& placement) {
+void PvrrOptic::place(const optics::Placement& placement) {
   if (placement == placement_) return;
   placement_ = placement;
-  if (refined_surface_) refined_surface_->place(placement);
+  if (own_surface_) own_surface_->place(placement);
   hits_hold_ = false;
 }
 
-void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
+void PvrrOptic::update(const RasterView& camera, const FrameOptions& options) {
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
@@ -116,15 +97,15 @@ void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
   const bool stays = hits_hold_;
   if (!stays) find_hits();
   if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays, options.reuse_static);
-  map_.resize(map_size_, options.geometry);
+  map_.resize(layout_, options.geometry);
 }
 
-bool PvrrPatch::rays_hold(const glm::dvec3& eye_mm) const {
+bool PvrrOptic::rays_hold(const glm::dvec3& eye_mm) const {
   return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
                              kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
-void PvrrPatch::trace(const glm::dvec3& eye_mm) {
+void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
   hits_hold_ = false;
   if (optic_.kind == OpticKind::mirror) {
@@ -140,24 +121,20 @@ void PvrrPatch::trace(const glm::dvec3& eye_mm) {
   faces_eye_ = ray_count_ > 0;
 }
 
-void PvrrPatch::find_hits() {
+void PvrrOptic::find_hits() {
   hits_hold_ = true;
   scene_rays_ = ray_count_;
-  const auto bounds = optics::in_own_frame(bounds_, placement_);
   if (optic_.kind == OpticKind::mirror) {
-    mirror_hits_ = with_hits(mirror_rays_);
-    fitted_ = optics::make_virtual_view(optic_, mirror_hits_, bounds);
+    whole_hits_ = with_hits(mirror_rays_);
     return;
   }
-  lens_rays_ = lens_paths_;
-  tbb::parallel_for(std::size_t(0), lens_rays_.hits.size(),
-                    [&](std::size_t k) { lens_rays_.hits[k] = with_hits(std::move(lens_rays_.hits[k])); });
-  fitted_ =
-      optics::make_virtual_view(optic_, lens_rays_.entered, rays_in_map(lens_rays_), bounds, kLensMargin);
-  for (auto& of_sample : lens_rays_.hits) close_off_map(of_sample, fitted_);
+  whole_lens_rays_ = lens_paths_;
+  auto& hits = whole_lens_rays_.hits;
+  tbb::parallel_for(std::size_t(0), hits.size(),
+                    [&](std::size_t k) { hits[k] = with_hits(std::move(hits[k])); });
 }
 
-std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
+std::vector<VertexHit> PvrrOptic::with_hits(std::vector<VertexHit> rays) const {
   if (placement_ == optics::Placement()) return optics::find_scene_hits(std::move(rays), rays_);
   std::vector<VertexHit> in_world = rays;
   for (VertexHit& ray : in_world) {
@@ -172,55 +149,72 @@ std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
   return rays;
 }
 
-void PvrrPatch::fit(const RasterView& camera, bool hits_anew, bool remember) {
+void PvrrOptic::fit(const RasterView& camera, bool hits_anew, bool remember) {
   fitted_for_ = camera;
   const bool was_on_grid = on_pixel_grid_;
-  const auto plane = optic_.kind == OpticKind::mirror
-                         ? plane_view(optic_, camera, fitted_, optics::in_own_frame(bounds_, placement_))
+  const bool cut_anew = choose_patches(camera, remember) || hits_anew;
+  if (cut_anew) fit_patches();
+  const auto plane = optic_.kind == OpticKind::mirror && !in_patches()
+                         ? plane_view(optic_, camera, fitted_[0], optics::in_own_frame(bounds_, placement_))
                          : std::optional<PlaneView>();
   on_pixel_grid_ = plane.has_value();
   const bool refines = scene_.settings.max_error_px > 0 && !plane;
-  if (hits_anew || plane || was_on_grid || refines) {
-    view_ = plane ? plane->view : fitted_;
-    if (hits_anew || plane || was_on_grid) set_coordinates();
-    coordinates_ = tessellated_coordinates_;
-    if (refines)
-      refine(camera, remember);
-    else
-      refined_surface_.reset();
-    // Another picture of the same mesh from the same place needs the same map.
-    if (hits_anew || plane || was_on_grid || refinement_.mesh_changed()) {
+  if (cut_anew || plane || was_on_grid || refines) {
+    views_ = plane ? std::vector{plane->view} : fitted_;
+    if (cut_anew || plane || was_on_grid) set_coordinates();
+    coordinates_ = cut_coordinates_;
+    const bool was_refined = std::exchange(refined_, false);
+    if (refines) refine(camera, remember);
+    const bool mesh_changed = cut_anew || was_refined != refined_ || (refined_ && refinement_.mesh_changed());
+    if (mesh_changed) set_surface();
+    // Another picture of the same mesh from the same place needs the same maps.
+    if (mesh_changed || plane || was_on_grid) {
       show();
       drawn_.reset();
     }
   }
-  if (plane) {
-    set_map_size({plane->texels, 1.0});
-    return;
-  }
+  if (plane)
+    set_layout({{plane->texels, 1.0}});
+  else
+    set_map_sizes(camera);
+}
+
+void PvrrOptic::set_map_sizes(const RasterView& camera) {
   std::vector<glm::dvec3> pixels;
   pixels.reserve(coordinates_.size());
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     pixels.push_back(hits()[i].faces_eye ? camera.pixel(seen_mesh().vertices[i].position_mm) : glm::dvec3(0));
-  set_map_size(choose_map_size(seen_mesh(), pixels, coordinates_, view_, camera.size,
-                               scene_.settings.texels_per_pixel));
+  const auto size_of = [&](const tessellate::OpticArrays& mesh, const optics::VirtualView& view) {
+    return choose_map_size(mesh, pixels, coordinates_, view, camera.size, scene_.settings.texels_per_pixel);
+  };
+  if (!in_patches()) {
+    set_layout({size_of(seen_mesh(), views_[0])});
+    return;
+  }
+  std::vector<tessellate::OpticArrays> parts(views_.size());
+  for (const auto& triangle : seen_mesh().triangles)
+    parts[patch_of(triangle.vertices[0])].triangles.push_back(triangle);
+  std::vector<PvrrMapSize> sizes;
+  for (std::size_t k = 0; k < parts.size(); ++k) sizes.push_back(size_of(parts[k], views_[k]));
+  set_layout(std::move(sizes));
 }
 
-void PvrrPatch::set_map_size(const PvrrMapSize& size) {
-  if (size.texels != map_size_.texels || size.texels_per_pixel != map_size_.texels_per_pixel) drawn_.reset();
-  map_size_ = size;
+void PvrrOptic::set_layout(std::vector<PvrrMapSize> sizes) {
+  const bool same = std::equal(sizes.begin(), sizes.end(), map_sizes_.begin(), map_sizes_.end(),
+                               [](const PvrrMapSize& a, const PvrrMapSize& b) {
+                                 return a.texels == b.texels && a.texels_per_pixel == b.texels_per_pixel;
+                               });
+  if (same) return;
+  drawn_.reset();
+  map_sizes_ = std::move(sizes);
+  std::vector<glm::ivec2> texels;
+  for (const PvrrMapSize& size : map_sizes_) texels.push_back(size.texels);
+  layout_ = lay_out(texels);
 }
 
-void PvrrPatch::set_coordinates() {
-  tessellated_coordinates_ =
-      optic_.kind == OpticKind::mirror
-          ? optics::map_coordinates(optic_, mirror_hits_, view_)
-          : optics::map_coordinates(optic_, lens_rays_.entered, lens_rays_.hits[0], view_);
-}
-
-void PvrrPatch::show() {
+void PvrrOptic::show() {
   if (optic_.kind == OpticKind::mirror) {
-    RasterOptic& surface = refined_surface_ ? *refined_surface_ : raster_.optic(index_);
+    RasterOptic& surface = own_surface_ ? *own_surface_ : raster_.optic(index_);
     surface.set_map_coordinates(coordinates_);
     return;
   }
@@ -228,89 +222,91 @@ void PvrrPatch::show() {
                   shown_rays(), lens_coordinates());
 }
 
-std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
+std::vector<std::vector<glm::dvec3>> PvrrOptic::lens_coordinates() const {
   const LensRays& rays = shown_rays();
   std::vector<std::vector<glm::dvec3>> of_samples{coordinates_};
   for (std::size_t k = 1; k < rays.hits.size(); ++k)
-    of_samples.push_back(optics::map_coordinates_like(coordinates_, rays.hits[k], view_));
+    of_samples.push_back(patch_coordinates_like(coordinates_, rays.hits[k], patches_of_seen(), views_));
   return of_samples;
 }
 
-void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+void PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   if (!faces_eye_) return;
   const glm::dvec2 offset = map_offset(offset_px);
   if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
-  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry, overlay);
+  for (std::size_t patch = 0; patch < views_.size(); ++patch)
+    map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
+              map_sizes_[patch].texels_per_pixel, offset, geometry, overlay);
   if (overlay)
     drawn_.reset();
   else
     drawn_ = {offset, geometry};
 }
 
-void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
+void PvrrOptic::set_map(std::size_t patch, glm::dvec2 offset_px, bool geometry) const {
   const RasterTarget& target = map_.target();
   const glm::dvec2 shift = -map_offset(offset_px) / glm::dvec2(target.size());
   glUniform2f(kMapShift, static_cast<float>(shift.x), static_cast<float>(shift.y));
+  const glm::vec4 place = map_.layout().place(faces_eye_ ? patch : 0);
+  glUniform4f(kMapPlace, place.x, place.y, place.z, place.w);
   glBindTextureUnit(kMapColorUnit, target.color().id());
   if (!geometry) return;
-  set_map_rays(placed(view_, placement_));
+  if (patch < views_.size()) set_map_rays(placed(views_[patch], placement_));
   glBindTextureUnit(kMapPositionUnit, target.position().id());
   glBindTextureUnit(kMapDetailUnit, target.detail().id());
 }
 
-std::span<const VertexHit> PvrrPatch::hits() const {
+std::span<const VertexHit> PvrrOptic::hits() const {
   if (optic_.kind == OpticKind::lens) return shown_rays().hits[0];
-  return refined_surface_ ? refinement_.hits() : mirror_hits_;
+  return refined_ ? refinement_.hits() : mirror_hits_;
 }
 
-const LensRays& PvrrPatch::shown_rays() const {
-  return refined_surface_ ? refined_rays_ : lens_rays_;
+const LensRays& PvrrOptic::shown_rays() const {
+  return refined_ ? refined_rays_ : lens_rays_;
 }
 
-const RasterOptic& PvrrPatch::seen_surface() const {
-  if (refined_surface_) return *refined_surface_;
-  return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_rays_.entered);
-}
-
-const tessellate::OpticArrays& PvrrPatch::seen_mesh() const {
-  if (refined_surface_) return refinement_.mesh();
-  return optic_.kind == OpticKind::mirror ? optic_.mesh : *optics::side_of(optic_, lens_rays_.entered).mesh;
-}
-
-glm::dvec2 PvrrPatch::map_offset(glm::dvec2 offset_px) const {
+glm::dvec2 PvrrOptic::map_offset(glm::dvec2 offset_px) const {
   // In general the map's samples move within its texels as the picture's do within pixels, but not in step
   // with them.
   return on_pixel_grid_ ? plane_view_offset(offset_px) : glm::dvec2(offset_px.y, offset_px.x);
 }
 
-OpticStats PvrrPatch::statistics() const {
+OpticStats PvrrOptic::statistics() const {
   OpticStats stats{optic_.name,
                    optic_.kind == OpticKind::mirror ? "mirror" : "lens",
-                   seen_mesh().vertices.size(),
+                   faces_eye_ ? vertex_count_ : tessellated_mesh().vertices.size(),
                    traced_rays_,
                    scene_rays_,
                    {},
                    refinement_rays_};
-  if (faces_eye_)
-    stats.patches.push_back(
-        {placement_.point(view_.viewpoint_mm), view_.residual_mm, {view_.fov_rad.x, view_.fov_rad.y}});
+  if (!faces_eye_) return stats;
+  for (std::size_t k = 0; k < views_.size(); ++k)
+    stats.patches.push_back({placement_.point(views_[k].viewpoint_mm),
+                             views_[k].residual_mm,
+                             {views_[k].fov_rad.x, views_[k].fov_rad.y},
+                             {map_sizes_[k].texels.x, map_sizes_[k].texels.y}});
   return stats;
 }
 
-optics::ViewRegions PvrrPatch::regions() const {
-  return faces_eye_ ? optics::view_regions(hits(), view_) : optics::ViewRegions();
+optics::ViewRegions PvrrOptic::regions() const {
+  optics::ViewRegions regions;
+  if (!faces_eye_) return regions;
+  std::vector<std::vector<optics::VertexHit>> of_patch(views_.size());
+  for (std::size_t i = 0; i < hits().size(); ++i) of_patch[patch_of(i)].push_back(hits()[i]);
+  for (std::size_t patch = 0; patch < views_.size(); ++patch)
+    regions += optics::view_regions(of_patch[patch], views_[patch]);
+  return regions;
 }
 
-std::optional<std::string> PvrrPatch::warning() const {
-  if (!faces_eye_ || !refined_surface_ || !(refinement_.error_left_px() > 0)) return std::nullopt;
+std::optional<std::string> PvrrOptic::warning() const {
+  if (!faces_eye_ || !refined_ || !(refinement_.error_left_px() > 0)) return std::nullopt;
   std::array<char, 16> error{};
   std::snprintf(error.data(), error.size(), "%.2g", refinement_.error_left_px());
-  return optic_.name + ": its mesh stays at " + std::to_string(seen_mesh().vertices.size()) +
-         " vertices (at most " + std::to_string(kMostRefinedVertices) + "), where edges are off by up to " +
-         error.data() + " px";
+  return optic_.name + ": its mesh stays at " + std::to_string(vertex_count_) + " vertices (at most " +
+         std::to_string(kMostRefinedVertices) + "), where edges are off by up to " + error.data() + " px";
 }
 
 }  // namespace catoptra::render

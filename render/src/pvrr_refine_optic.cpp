@@ -1,10 +1,10 @@
-// PvrrPatch: from the mesh as tessellated to the refined one.
+// PvrrOptic: from the mesh as tessellated to the refined one.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "optics/map_coordinates.h"
-#include "render/src/pvrr_patch.h"
+#include "render/src/patch_coordinates.h"
+#include "render/src/pvrr_optic.h"
 
 namespace catoptra::render {
 namespace {
@@ -17,12 +17,15 @@ using optics::VertexHit;
 constexpr double kMostWider = 0.25;
 constexpr double kMargin = 0.01;
 
-/// Makes room in `view` for what vertices from `first` on show, and moves `coordinates` along.
+/// Makes room in `view` for what vertices from `first` on show that belong to `patch`, and moves the
+/// `coordinates` of that patch along. `patch_of` empty: all belong to it.
 void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size_t first,
+           std::span<const std::uint32_t> patch_of, std::uint32_t patch,
            std::vector<glm::dvec3>& coordinates) {
+  const auto belongs = [&](std::size_t i) { return patch_of.empty() || patch_of[i] == patch; };
   glm::dvec2 low(0), high(1);
   for (std::size_t i = first; i < hits.size(); ++i) {
-    if (!passes(hits[i])) continue;
+    if (!belongs(i) || !passes(hits[i])) continue;
     const glm::dvec2 at = glm::dvec2(coordinates[i]) / coordinates[i].z;
     low = glm::min(low, at - kMargin);
     high = glm::max(high, at + kMargin);
@@ -38,7 +41,9 @@ void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size
   if (view.projection == optics::MapProjection::perspective)
     view.fov_rad = {std::atan(view.right_side) - std::atan(view.left),
                     std::atan(view.top) - std::atan(view.bottom)};
-  for (glm::dvec3& c : coordinates) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (!belongs(i)) continue;
+    glm::dvec3& c = coordinates[i];
     const glm::dvec2 st = (glm::dvec2(c) - low * c.z) / (high - low);
     c = {st.x, st.y, c.z};
   }
@@ -46,30 +51,27 @@ void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size
 
 }  // namespace
 
-void PvrrPatch::refine(const RasterView& camera, bool remember) {
+void PvrrOptic::refine(const RasterView& camera, bool remember) {
   const bool lens = optic_.kind == OpticKind::lens;
   const std::span<const VertexHit> hits = lens ? lens_rays_.hits[0] : mirror_hits_;
-  refinement_.refine({optic_, lens_rays_.entered, tracer_.get(), hits, tessellated_coordinates_, view_,
-                      *traced_from_, camera, scene_.settings.max_error_px, remember,
+  refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits, cut_coordinates_, views_,
+                      patches_.patch, *traced_from_, camera, scene_.settings.max_error_px, remember,
                       [this](std::vector<VertexHit> rays) { return with_hits(std::move(rays)); }});
   refinement_rays_ = refinement_.traced_rays();
   scene_rays_ += refinement_.scene_rays();
-  if (!refinement_.is_refined()) {
-    refined_surface_.reset();
+  refined_ = refinement_.is_refined();
+  if (!refined_) {
     traced_rays_ += refinement_rays_;
     return;
-  }
-  if (!refined_surface_ || refinement_.mesh_changed()) {
-    refined_surface_ = std::make_unique<RasterOptic>(refinement_.mesh(), false);
-    refined_surface_->place(placement_);
   }
   coordinates_.assign(refinement_.coordinates().begin(), refinement_.coordinates().end());
   if (lens) refine_lens(remember);
   traced_rays_ += refinement_rays_;
-  widen(view_, PvrrPatch::hits(), tessellated_coordinates_.size(), coordinates_);
+  for (std::uint32_t patch = 0; patch < views_.size(); ++patch)
+    widen(views_[patch], PvrrOptic::hits(), cut_coordinates_.size(), patches_of_seen(), patch, coordinates_);
 }
 
-void PvrrPatch::refine_lens(bool remember) {
+void PvrrOptic::refine_lens(bool remember) {
   if (!remember || refinement_.mesh_changed() || refined_from_ != traced_from_) {
     if (refined_lens_.faces.empty()) refined_lens_ = optic_;
     const bool front = lens_rays_.entered == optics::LensSide::front;
@@ -82,11 +84,11 @@ void PvrrPatch::refine_lens(bool remember) {
   for (auto& of_sample : refined_rays_.hits) {
     scene_rays_ += of_sample.size();
     of_sample = with_hits(std::move(of_sample));
-    close_off_map(of_sample, view_);
+    close_off_maps(of_sample, patches_of_seen(), views_);
   }
   // What the refinement has not followed shows what lies beside it: beyond the border of what passes.
   const auto q = coordinates_;
-  coordinates_ = optics::map_coordinates_like(q, refined_rays_.hits[0], view_);
+  coordinates_ = patch_coordinates_like(q, refined_rays_.hits[0], patches_of_seen(), views_);
 }
 
 }  // namespace catoptra::render
