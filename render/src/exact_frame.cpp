@@ -3,7 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "render/src/sampling.h"
+#include "render/src/smooth_pixels.h"
 #include "render/src/threads.h"
 
 namespace catoptra::render {
@@ -68,6 +68,8 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
       frame.direction = std::move(v.geometry.direction);
       frame.optic_id = std::move(v.geometry.optic_id);
       v.rays += tracer.trace_pixels(camera, options, marked_pixels(v.wrong), frame);
+      if (picture.multisample() > 1)
+        v.rays += trace_smooth(tracer, camera, options, picture.multisample(), wrong_outline(v), frame);
     });
   });
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,9 +87,19 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   return result;
 }
 
+/// Pixels that end an optic and are traced anew, where the picture has several samples a pixel.
+std::vector<std::uint32_t> ExactFrame::wrong_outline(const Verification& v) {
+  const RasterView view = camera_view(v.camera, {v.options.width, v.options.height}, v.camera.offset_px);
+  mask_.begin(view.size, nullptr, v.picture.multisample());
+  mask_.draw(view);
+  std::vector<std::uint32_t> outline = mask_.outline();
+  std::erase_if(outline, [&](std::uint32_t pixel) { return !v.wrong[pixel]; });
+  return outline;
+}
+
 void ExactFrame::verify_sample(Verification& v, int sample, const RasterView& view) {
   const FrameOptions& options = v.options;
-  const glm::dvec2 offset = sample_offset(sample, options.samples);
+  const glm::dvec2 offset = v.camera.offset_px;
   // Hidden optics too: the ray tracer knows what hides them, and would be asked about outlines anyway.
   mask_.begin(view.size, nullptr);
   mask_.draw(view);
@@ -96,7 +108,7 @@ void ExactFrame::verify_sample(Verification& v, int sample, const RasterView& vi
        extreme == 0 || pvrr_.draw_extreme_geometry(v.picture.target(), view, offset, extreme); ++extreme) {
     v.picture.read_geometry(shown_);
     exact_.reset(options.width, options.height);
-    v.rays += v.tracer.trace_exact(v.camera, options, offset, extreme, pixels, exact_);
+    v.rays += v.tracer.trace_exact(v.camera, options, {0, 0}, extreme, pixels, exact_);
     compare_pixels(v, pixels);
     if (extreme == 0 && sample == 0 && options.geometry) v.geometry = with_exact_rays(shown_, exact_);
   }

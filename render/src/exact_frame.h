@@ -21,16 +21,17 @@ class ExactFrame {
   /// Draws with `pvrr`, and keeps the references.
   ExactFrame(const Scene& scene, const RasterScene& raster, PvrrFrame& pvrr);
 
-  /// Every sample is verified, behind a lens at the reference, shortest and longest wavelength; a pixel with
-  /// a sample that is wrong (see agrees()) is traced with all its samples, at all wavelengths. The picture is
-  /// put together on the CPU and so always read back. `tracer` has the optics where `pvrr` has them. Overlays
-  /// are left out. Times: those of mode pvrr, "verify", "retrace".
+  /// Every pixel is verified, behind a lens at the reference, shortest and longest wavelength; one that is
+  /// wrong (see agrees()) is traced at all wavelengths. With several samples that holds for each. The picture
+  /// is put together on the CPU and so always read back. `tracer` has the optics where `pvrr` has them.
+  /// Overlays are left out. Times: those of mode pvrr, "verify", "retrace".
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
                                     const RayTracer& tracer);
 
  private:
   struct Verification;
   void verify_sample(Verification& v, int sample, const RasterView& view);
+  [[nodiscard]] std::vector<std::uint32_t> wrong_outline(const Verification& v);
   void compare_pixels(Verification& v, std::span<const std::uint32_t> pixels);
 
   const Scene& scene_;

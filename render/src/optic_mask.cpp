@@ -31,19 +31,22 @@ OpticMask::OpticMask(const Scene& scene, const RasterScene& raster)
       raster_(raster),
       program_(make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_mask.frag.glsl"})) {}
 
-void OpticMask::begin(glm::ivec2 size, const GlTexture* depth) {
-  if (size_ != size) {
-    mask_ = make_texture_2d(GL_R8, size.x, size.y, 1, false);
-    size_ = size;
-  }
+void OpticMask::begin(glm::ivec2 size, const GlTexture* depth, int multisample) {
+  if (size_ != size) mask_ = make_texture_2d(GL_R8, size.x, size.y, 1, false);
+  if (multisample > 1 && (size_ != size || multisample_ != multisample || !smooth_))
+    smooth_ = make_texture_multisample(GL_R8, size.x, size.y, multisample);
+  size_ = size;
+  multisample_ = multisample;
   // The depth texture may be another one than in the last frame.
-  framebuffer_ = make_framebuffer({&mask_}, depth);
+  framebuffer_ = make_framebuffer({&mask_}, multisample > 1 ? nullptr : depth);
+  if (multisample > 1) smooth_framebuffer_ = make_framebuffer({&smooth_}, depth);
   const glm::vec4 nothing(0);
-  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, &nothing.x);
+  for (const GlFramebuffer* framebuffer : {&framebuffer_, &smooth_framebuffer_})
+    if (*framebuffer) glClearNamedFramebufferfv(framebuffer->id(), GL_COLOR, 0, &nothing.x);
 }
 
 void OpticMask::draw(const RasterView& view) {
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, multisample_ > 1 ? smooth_framebuffer_.id() : framebuffer_.id());
   glUseProgram(program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
@@ -57,11 +60,26 @@ void OpticMask::draw(const RasterView& view) {
   }
 }
 
-std::vector<std::uint32_t> OpticMask::pixels() const {
+std::vector<std::uint8_t> OpticMask::read() const {
+  if (multisample_ > 1)
+    glBlitNamedFramebuffer(smooth_framebuffer_.id(), framebuffer_.id(), 0, 0, size_.x, size_.y, 0, 0, size_.x,
+                           size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
-  return with_neighbours(mask, size_.x, size_.y);
+  return mask;
+}
+
+std::vector<std::uint32_t> OpticMask::pixels() const {
+  return with_neighbours(read(), size_.x, size_.y);
+}
+
+std::vector<std::uint32_t> OpticMask::outline() const {
+  if (multisample_ == 1) return {};
+  const std::vector<std::uint8_t> covered = read();
+  std::vector<std::uint32_t> pixels = with_neighbours(covered, size_.x, size_.y);
+  std::erase_if(pixels, [&](std::uint32_t pixel) { return covered[pixel] == 255; });
+  return pixels;
 }
 
 }  // namespace catoptra::render

@@ -17,20 +17,25 @@ class OpticMask {
  public:
   OpticMask(const Scene& scene, const RasterScene& raster);
 
-  /// Starts an empty mask. `depth`: a depth buffer of that size, before which optics count; null: all do,
-  /// hidden or not.
-  void begin(glm::ivec2 size, const GlTexture* depth);
+  /// Starts an empty mask. `depth`: a depth buffer of that size and `multisample` places in each pixel,
+  /// before which optics count; null: all do, hidden or not.
+  void begin(glm::ivec2 size, const GlTexture* depth, int multisample = 1);
   /// Adds the optics as seen in `view`, which must be the one that RasterScene has begun last.
   void draw(const RasterView& view);
   /// row * width + column of every pixel in or beside which some draw shows an optic, ascending.
   [[nodiscard]] std::vector<std::uint32_t> pixels() const;
+  /// Those of them that optics do not cover altogether, ascending: none without multisampling.
+  [[nodiscard]] std::vector<std::uint32_t> outline() const;
 
  private:
+  [[nodiscard]] std::vector<std::uint8_t> read() const;
+
   const Scene& scene_;
   const RasterScene& raster_;
-  GlTexture mask_;
-  GlFramebuffer framebuffer_;
+  GlTexture mask_, smooth_;  ///< the latter with several samples a pixel
+  GlFramebuffer framebuffer_, smooth_framebuffer_;
   glm::ivec2 size_{0};
+  int multisample_ = 1;
   GlProgram program_;
 };
 

@@ -68,21 +68,19 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       const RasterView view = camera_view(camera, size);
       for (PvrrPatch& patch : patches_) patch.update(view, drawn);
       set_overlay(options);
-      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
-      update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
-    for (int sample = 0; sample < options.samples; ++sample) {
-      const glm::dvec2 offset = sample_offset(sample, options.samples);
-      const bool geometry = drawn.geometry && (sample == 0 || sample_done);
-      pass1_ms += gl_time_ms([&] {
-        for (PvrrPatch& patch : patches_) patch.draw_map(offset, geometry, overlay);
-      });
-      pass2_ms += gl_time_ms([&] {
-        draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
-        picture.add_sample();
-      });
-      if (sample_done) sample_done(sample, camera_view(camera, size, offset));
-    }
+    const glm::dvec2 offset = camera.offset_px;
+    pass1_ms = gl_time_ms([&] {
+      for (PvrrPatch& patch : patches_) patch.draw_map(offset, drawn.geometry, overlay);
+    });
+    pass2_ms = gl_time_ms([&] {
+      for (const auto& pass : picture.passes(drawn.geometry)) {
+        if (picture.summed() == 0) count_anew();
+        draw_picture(*pass.target, camera_view(camera, size, offset), offset, pass.geometry, options);
+      }
+      picture.add_sample();
+    });
+    if (sample_done) sample_done(0, camera_view(camera, size, offset));
     if (options.read_back)
       readback_ms =
           gl_time_ms([&] { result.frame = sample_done ? picture.read_color() : picture.read_back(); });
@@ -95,6 +93,11 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   for (const PvrrPatch& patch : patches_)
     if (auto warning = patch.warning()) result.warnings.push_back(std::move(*warning));
   return result;
+}
+
+void PvrrFrame::count_anew() const {
+  const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
+  update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
 }
 
 std::vector<std::string> PvrrFrame::map_warnings() const {

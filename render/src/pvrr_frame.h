@@ -48,6 +48,7 @@ class PvrrFrame {
                     const FrameOptions& options);
   void draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
                   glm::dvec2 offset_px, bool geometry);
+  void count_anew() const;
   [[nodiscard]] std::vector<std::string> map_warnings() const;
   [[nodiscard]] FrameStats statistics() const;
   const GlProgram& mirror_program(bool geometry);

@@ -85,8 +85,21 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   pass.draw_optics = true;
   pass.except = optic;
-  target_->bind(geometry);
+  const int multisample = available_multisamples(multisample_);
+  if (multisample == 1 || geometry) {
+    target_->bind(geometry);
+    scene.draw(view_, pass);
+  }
+  if (multisample == 1) {
+    smooth_.reset();
+    return;
+  }
+  // Geometry is that of the texels' centres, and drawn on its own.
+  RasterTarget::fit(smooth_, target_->size(), false, multisample);
+  pass.geometry = false;
+  smooth_->bind(false);
   scene.draw(view_, pass);
+  smooth_->resolve_into(*target_);
 }
 
 }  // namespace catoptra::render

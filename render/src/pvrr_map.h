@@ -41,6 +41,9 @@ class PvrrMap {
   /// Renews the textures where their size is not that of `size`.
   void resize(const PvrrMapSize& size, bool geometry);
 
+  /// From the next draw() on, outlines get so many samples a texel, as far as the driver has them.
+  void set_multisample(int samples) { multisample_ = samples; }
+
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
 
@@ -61,7 +64,8 @@ class PvrrMap {
 
  private:
   PvrrMapSize size_;
-  std::unique_ptr<RasterTarget> target_;
+  std::unique_ptr<RasterTarget> target_, smooth_;  ///< the latter with several samples a texel, or null
+  int multisample_ = 1;
   GlTexture optic_depth_;
   GlFramebuffer optic_depth_framebuffer_;
   RasterView view_;

@@ -106,6 +106,7 @@ void PvrrPatch::place(const optics::Placement& placement) {
 
 void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
+  multisample_ = options.multisample;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
   if (!faces_eye_) {
@@ -239,12 +240,14 @@ std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
 void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   if (!faces_eye_) return;
   const glm::dvec2 offset = map_offset(offset_px);
-  if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
+  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_};
+  if (!overlay && drawn_ == wanted) return;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
+  map_.set_multisample(wanted.multisample);  // overlays are drawn over the map as it is
   map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry);
-  drawn_ = {offset, geometry};
+  drawn_ = wanted;
   if (!overlay) return;
   map_.target().bind(false);
   overlay->draw_in_scene(map_.view(), map_.clip_depth());

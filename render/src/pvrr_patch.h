@@ -117,9 +117,12 @@ class PvrrPatch {
   struct Drawn {
     glm::dvec2 offset_px;
     bool geometry;
+    int multisample;
+    bool operator==(const Drawn&) const = default;
   };
   std::optional<Drawn> drawn_;  ///< what the map holds
   PvrrMap map_;
+  int multisample_ = 1;
   std::size_t traced_rays_ = 0, scene_rays_ = 0, refinement_rays_ = 0;
 };
 
