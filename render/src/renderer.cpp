@@ -315,7 +315,7 @@ Renderer::~Renderer() = default;
 RenderResult Renderer::render(Mode mode, const Camera& camera, const FrameOptions& options) {
   check_options(impl_->scene, camera, options);
   impl_->stop_accumulating();
-  return impl_->render(mode, camera, options, options.samples);
+  return impl_->render(mode, camera, options);
 }
 
 RenderResult Renderer::accumulate(Mode mode, const Camera& camera, const FrameOptions& options, int more) {
