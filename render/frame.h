@@ -69,6 +69,7 @@ struct FrameStats {
   std::vector<OpticStats> optics;
   std::map<std::string, double> time_ms;
   std::size_t rays = 0;  ///< all rays of the frame
+  int samples = 1;       ///< per pixel in the picture; above 1, all numbers above are sums over them
 };
 
 struct RenderResult {
@@ -92,6 +93,12 @@ struct FrameOptions {
   /// stay, the rays alone while they move together (PVRR paper, 5). Changes no picture by more than
   /// rounding, only its cost; false: everything anew in every frame.
   bool reuse_static = true;
+  /// Hardware multisampling of outlines, 1, 2, 4 or 8 times: the cheap way while things move. Less where the
+  /// driver cannot, which a warning tells. Not in mode raytrace, and not in pictures of several samples,
+  /// which have better.
+  int multisample = 1;
+
+  bool operator==(const FrameOptions&) const = default;
 };
 
 }  // namespace catoptra::render

@@ -26,6 +26,14 @@ class Renderer {
   /// Mode::automatic traces then.
   [[nodiscard]] RenderResult render(Mode mode, const Camera& camera, const FrameOptions& options);
 
+  /// For a view that stands still: adds up to `more` samples to the picture until it has options.samples of
+  /// them, and returns their mean, RenderResult::stats.samples in number. With that number it is the picture
+  /// of render(), byte for byte; before, where it is even and at least 4, as is options.samples, that of
+  /// render() with so many samples. Another mode, camera or option, render(), and an optic that changes or
+  /// moves, start it anew. Throws as render() does.
+  [[nodiscard]] RenderResult accumulate(Mode mode, const Camera& camera, const FrameOptions& options,
+                                        int more = 1);
+
   /// Time in ms of the bare packet queries of a raytrace frame: the yardstick of the reference's speed.
   [[nodiscard]] double bare_packet_ms(const Camera& camera, const FrameOptions& options) const;
 

@@ -17,6 +17,19 @@ struct Camera {
   glm::dvec3 up{0, 0, 1};
   double fov_rad = 0.698;  ///< vertical
   glm::ivec2 resolution{1280, 720};
+
+  /// Diameter of the eye's pupil: each sample of a picture then has its own place in it, and only what lies
+  /// in the plane at `focus_mm` before the eye, at right angles to the view, stays sharp. 0: a point. A
+  /// picture of one sample shows nothing of it.
+  double pupil_mm = 0;
+  double focus_mm = 0;  ///< 0: the distance of the target
+
+  // Of one sample; Renderer sets them (see sample_camera in src/sampling.h).
+  glm::dvec2 offset_px{0,
+                       0};  ///< of the place in every pixel that is shown from its centre; +x right, +y down
+  glm::dvec2 shift{0, 0};   ///< of the picture's middle from the axis, as tangents; +x right, +y up
+
+  bool operator==(const Camera&) const = default;
 };
 
 enum class LightKind { directional, point, area };

@@ -25,7 +25,8 @@ struct RenderOptions {
   DrawingOptions drawing;
   std::string output, mode, report, reference, overlay;
   double reference_threshold = kDefaultReferenceThreshold;
-  int samples = 1;
+  int samples = 1, multisample = 1;
+  std::optional<double> pupil_mm, focus_mm;
   bool aov = false;
 };
 
@@ -53,6 +54,7 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
                               {"mode", render::mode_name(mode)}};
   if (result.choice) json["choice"] = choice_json(*result.choice);
   json.update({{"samples", options.samples},
+               {"multisample", options.samples > 1 ? 1 : options.multisample},
                {"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats, nullptr)},
                {"rays", result.stats.rays},
                {"time_ms", result.stats.time_ms},
@@ -122,12 +124,15 @@ int run_render(const RenderOptions& options, const CommonOptions& common) {
   if (!options.mode.empty()) mode = parse_mode(options.mode);
   check_picture_path(options.output);
   Session session(options.drawing, common);
+  if (options.pupil_mm) session.file.scene.camera.pupil_mm = *options.pupil_mm;
+  if (options.focus_mm) session.file.scene.camera.focus_mm = *options.focus_mm;
   if (!mode) mode = parse_mode(session.scene().settings.mode);
   check_overlay(options, *mode);
   const auto reference = read_reference(options, session.frame);
 
   render::FrameOptions frame_options = session.frame;
   frame_options.samples = options.samples;
+  frame_options.multisample = options.multisample;
   frame_options.overlay_vertices = options.overlay == "vertices" || options.overlay == "rays";
   frame_options.overlay_rays = options.overlay == "rays";
   frame_options.overlay_patches = options.overlay == "patches";
@@ -172,6 +177,19 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
   app->add_option("--samples", options->samples, "Samples per pixel")
       ->check(CLI::Range(1, 4096))
       ->option_text("N");
+  app->add_option(
+         "--multisample", options->multisample,
+         "Hardware multisampling of outlines where --samples is 1: 1, 2, 4 or 8; not in mode raytrace")
+      ->check(CLI::IsMember({1, 2, 4, 8}))
+      ->option_text("N");
+  app->add_option("--pupil-mm", options->pupil_mm,
+                  "Diameter of the eye's pupil in mm, in place of the scene's; 0: a point. Needs --samples")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->option_text("MM");
+  app->add_option("--focus-mm", options->focus_mm,
+                  "Distance that the eye focuses on, in mm, in place of the scene's; 0: that of the target")
+      ->check(CLI::Range(0.0, 1e9))
+      ->option_text("MM");
   app->add_option("--report", options->report, "JSON report to write; an .exr gets the geometry layers")
       ->option_text("R.json");
   app->add_flag("--aov", options->aov, "Geometry layers in an .exr");

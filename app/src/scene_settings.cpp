@@ -55,7 +55,8 @@ render::Camera read_camera(const TomlTable& root, const SceneContext& context) {
   render::Camera camera;
   const toml::table* found = root.table("camera");
   if (!found) return camera;
-  const TomlTable table(*found, context.name, "camera", {"eye", "target", "up", "fov_deg", "resolution"});
+  const TomlTable table(*found, context.name, "camera",
+                        {"eye", "target", "up", "fov_deg", "resolution", "pupil_mm", "focus_mm"});
   if (const auto eye = table.vec3("eye")) camera.eye_mm = *eye * context.unit_mm;
   if (const auto target = table.vec3("target")) camera.target_mm = *target * context.unit_mm;
   if (const auto up = table.vec3("up")) camera.up = *up;
@@ -65,6 +66,8 @@ render::Camera read_camera(const TomlTable& root, const SceneContext& context) {
     if (camera.resolution.x != (*resolution)[0] || camera.resolution.y != (*resolution)[1])
       table.fail("resolution", "expected two integers");
   }
+  camera.pupil_mm = table.number("pupil_mm", {0, 1000}).value_or(0);
+  camera.focus_mm = table.number("focus_mm", {0, 1e9}).value_or(0);
   check_camera(table, camera);
   return camera;
 }

@@ -3,7 +3,7 @@
 
 in vec3 v_relative;
 in vec3 v_normal;
-in vec3 v_texture;  // homogeneous map coordinates (s q, t q, q)
+centroid in vec3 v_texture;  // homogeneous map coordinates (s q, t q, q); with multisampling never beyond the border
 
 layout(location = 7) uniform vec2 map_shift;  // sub-texel offset with which this sample's map was drawn
 

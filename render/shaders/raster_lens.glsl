@@ -2,9 +2,9 @@
 // Needs raster_view.glsl, raster_shown.glsl.
 
 in vec3 v_relative;
-in vec4 v_exit;            // last point on the lens, relative to the view's origin; transmittance
-in vec2 v_mask;
-in vec4 v_shown[SAMPLES];
+centroid in vec4 v_exit;            // last point on the lens, relative to the view's origin; transmittance
+centroid in vec2 v_mask;
+centroid in vec4 v_shown[SAMPLES];
 
 layout(binding = 5) uniform sampler2D exit_mask;  // above 1/2 on the exit surface, below beside it
 

@@ -61,16 +61,17 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
       for (std::size_t i = 0; i < cubes_.size(); ++i)
         draw_cube(i, face, face / (2 * pixels_per_tangent), options.geometry);
     });
-    for (int sample = 0; sample < options.samples; ++sample)
-      pass2_ms += gl_time_ms([&] {
-        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
+    pass2_ms = gl_time_ms([&] {
+      const RasterView view = camera_view(camera, size, camera.offset_px);
+      for (const auto& [target, geometry] : picture.passes(options.geometry)) {
         RasterPass pass;
-        pass.geometry = options.geometry && sample == 0;
-        picture.target().bind(pass.geometry);
+        pass.geometry = geometry;
+        target->bind(geometry);
         raster_.draw(view, pass);
-        for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, picture.target(), view, pass.geometry);
-        picture.add_sample();
-      });
+        for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, *target, view, geometry);
+      }
+      picture.add_sample();
+    });
     if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
   });
   result.stats.time_ms = {{"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "render/src/sampling.h"
+#include "render/src/smooth_pixels.h"
 
 namespace catoptra::render {
 
@@ -16,46 +16,43 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   const glm::ivec2 size(options.width, options.height);
   std::size_t rays = 0;
   std::vector<std::uint8_t> marks;
-  std::vector<std::uint32_t> pixels;
+  std::vector<std::uint32_t> pixels, outline;
   std::vector<std::uint8_t> retraced(std::size_t(size.x) * std::size_t(size.y), 0);
   const double total_ms = gl_time_ms([&] {
     pass2_ms = gl_time_ms([&] {
       picture.begin(options);
-      mask_.begin(size, &picture.target().depth());
-      for (int sample = 0; sample < options.samples; ++sample) {
+      const RasterView view = camera_view(camera, size, camera.offset_px);
+      for (const auto& [target, geometry] : picture.passes(options.geometry)) {
         RasterPass pass;
-        pass.geometry = options.geometry && sample == 0;
-        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
-        picture.target().bind(pass.geometry);
+        pass.geometry = geometry;
+        target->bind(geometry);
         raster_.draw(view, pass);
+        mask_.begin(size, &target->depth(), target->multisample());
         mask_.draw(view);
-        picture.add_sample();
       }
+      picture.add_sample();
       marks = mask_.marks();
       pixels = marked_pixels(marks);
+      outline = mask_.outline();
       start_traced(options, pixels);
     });
     trace_ms = gl_time_ms([&] {
       FrameOptions without_geometry = options;
       without_geometry.geometry = false;
+      without_geometry.multisample = 1;  // colours of maps go with the depths of their texels
       pvrr_.update(camera, without_geometry);
     });
-    for (int sample = 0; sample < options.samples; ++sample) {
-      pass1_ms += gl_time_ms([&] {
-        pvrr_.draw_maps(sample_offset(sample, options.samples), false, nullptr);
-        pvrr_.copy_maps(maps_);
-      });
-      verify_ms += gl_time_ms([&] {
-        // Which samples of a pixel the mask has is known of a single one alone.
-        const MappedSample mapped{maps_, sample,
-                                  options.samples == 1 ? std::span(marks) : std::span<const std::uint8_t>(),
-                                  retraced, owner_};
-        rays += tracer.trace_mapped(camera, options, pixels, mapped, traced_);
-      });
-    }
+    pass1_ms = gl_time_ms([&] {
+      pvrr_.draw_maps(camera.offset_px, false, nullptr);
+      pvrr_.copy_maps(maps_);
+    });
+    verify_ms = gl_time_ms([&] {
+      rays += tracer.trace_mapped(camera, options, pixels, {maps_, marks, retraced, owner_}, traced_);
+    });
     readback_ms = gl_time_ms([&] {
       result.frame = picture.read_back();
       take_traced(pixels, result);
+      rays += trace_smooth(tracer, camera, options, picture.multisample(), outline, result.frame);
     });
   });
   result.stats = pvrr_.statistics();

@@ -20,17 +20,14 @@ class ExactFrame {
   /// Draws maps with `pvrr` and what stands around the optics with `raster`; keeps the references.
   ExactFrame(const Scene& scene, RasterScene& raster, PvrrFrame& pvrr);
 
-  /// A pixel in which some sample, or behind a lens some wavelength, meets what no map shows is counted as
-  /// retraced, and that sample is shaded as in mode raytrace. The picture is put together on the CPU and so
-  /// always read back. `tracer` has the optics where `pvrr` has them. Times: "trace", "pass1" and "pass2" as
-  /// in mode pvrr (the latter without optics), "verify": the exact rays and their colours, "readback",
-  /// "total".
+  /// A pixel that, behind a lens at some wavelength, meets what no map shows is counted as retraced and
+  /// shaded as in mode raytrace. The picture is put together on the CPU and so always read back. `tracer` has
+  /// the optics where `pvrr` has them. Times: "trace", "pass1" and "pass2" as in mode pvrr (the latter
+  /// without optics), "verify": the exact rays and their colours, "readback", "total".
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
                                     const RayTracer& tracer);
 
  private:
-  [[nodiscard]] std::vector<std::uint32_t> pixels_of_optics(const Camera& camera,
-                                                            const FrameOptions& options);
   void start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels);
   void take_traced(std::span<const std::uint32_t> pixels, RenderResult& result);
 

@@ -1,5 +1,6 @@
 #include "render/src/gl_objects.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -111,6 +112,23 @@ GlTexture make_texture_2d(GLenum format, int width, int height, int levels, bool
   glTextureStorage2D(id, levels, format, width, height);
   set_filter(id, linear, levels > 1);
   return texture;
+}
+
+GlTexture make_texture_multisample(GLenum format, int width, int height, int samples) {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &id);
+  GlTexture texture(id);
+  glTextureStorage2DMultisample(id, samples, format, width, height, GL_TRUE);
+  return texture;
+}
+
+int available_multisamples(int wanted) {
+  GLint color = 1, depth = 1;
+  glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &color);
+  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &depth);
+  int samples = 1;
+  while (2 * samples <= std::min({wanted, color, depth})) samples *= 2;
+  return samples;
 }
 
 GlTexture make_texture_cube(GLenum format, int size, bool linear) {

@@ -67,6 +67,10 @@ void bind_attributes(const GlVertexArray& array, GLuint binding, const GlBuffer&
 
 /// 2D texture with immutable storage; nearest or linear, clamped to its edge.
 [[nodiscard]] GlTexture make_texture_2d(GLenum format, int width, int height, int levels, bool linear);
+/// The same with `samples` places in each texel, to be drawn into and resolved.
+[[nodiscard]] GlTexture make_texture_multisample(GLenum format, int width, int height, int samples);
+/// The most samples up to `wanted`, 1 or more, that colour and depth can have here: a power of two.
+[[nodiscard]] int available_multisamples(int wanted);
 /// Cube map of `size` x `size` faces, one level, seamless where linear.
 [[nodiscard]] GlTexture make_texture_cube(GLenum format, int size, bool linear);
 

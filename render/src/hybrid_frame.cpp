@@ -1,6 +1,6 @@
 #include "render/src/hybrid_frame.h"
 
-#include "render/src/sampling.h"
+#include "render/src/smooth_pixels.h"
 
 namespace catoptra::render {
 HybridFrame::HybridFrame(const Scene& scene, RasterScene& raster)
@@ -14,24 +14,28 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
   const double total_ms = gl_time_ms([&] {
     raster_ms = gl_time_ms([&] {
       picture.begin(options);
-      mask_.begin(picture.target().size(), &picture.target().depth());
-      for (int sample = 0; sample < options.samples; ++sample) {
+      const RasterView view = camera_view(camera, size, camera.offset_px);
+      for (const auto& [target, geometry] : picture.passes(options.geometry)) {
         RasterPass pass;
-        pass.geometry = options.geometry && sample == 0;
-        const RasterView view = camera_view(camera, size, sample_offset(sample, options.samples));
-        picture.target().bind(pass.geometry);
+        pass.geometry = geometry;
+        target->bind(geometry);
         raster_.draw(view, pass);
+        mask_.begin(size, &target->depth(), target->multisample());
         mask_.draw(view);
-        picture.add_sample();
       }
+      picture.add_sample();
     });
-    std::vector<std::uint32_t> pixels;
+    std::vector<std::uint32_t> pixels, outline;
     readback_ms = gl_time_ms([&] {
       result.frame = picture.read_back();
       pixels = marked_pixels(mask_.marks());
+      outline = mask_.outline();
     });
-    trace_ms =
-        gl_time_ms([&] { result.stats.rays = tracer.trace_pixels(camera, options, pixels, result.frame); });
+    trace_ms = gl_time_ms([&] {
+      result.stats.rays = tracer.trace_pixels(camera, options, pixels, result.frame);
+      result.stats.rays +=
+          trace_smooth(tracer, camera, options, picture.multisample(), outline, result.frame);
+    });
   });
   result.stats.time_ms = {
       {"raster", raster_ms}, {"readback", readback_ms}, {"trace", trace_ms}, {"total", total_ms}};

@@ -6,7 +6,7 @@
 namespace catoptra::render {
 namespace {
 
-/// `mask` is 255 or 0.
+/// `mask` is 255 where an optic covers the pixel, 0 where none does, and between where it does in part.
 std::vector<std::uint8_t> with_edges(const std::vector<std::uint8_t>& mask, int width, int height) {
   const auto wide = static_cast<std::size_t>(width);
   std::vector<std::uint8_t> marks(mask.size());
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> with_edges(const std::vector<std::uint8_t>& mask, int 
     for (std::size_t x = 0; x < wide; ++x) {
       const std::size_t before = x > 0 ? x - 1 : x, after = x + 1 < wide ? x + 1 : x;
       const bool some = (any[before] | any[x] | any[after]) != 0,
-                 every = (all[before] & all[x] & all[after]) != 0;
+                 every = (all[before] & all[x] & all[after]) == 255;
       out[x] = every ? kOpticPixel : some ? kOpticEdge : std::uint8_t(0);
     }
   }
@@ -46,19 +46,22 @@ OpticMask::OpticMask(const Scene& scene, const RasterScene& raster)
       raster_(raster),
       program_(make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_mask.frag.glsl"})) {}
 
-void OpticMask::begin(glm::ivec2 size, const GlTexture* depth) {
-  if (size_ != size) {
-    mask_ = make_texture_2d(GL_R8, size.x, size.y, 1, false);
-    size_ = size;
-  }
+void OpticMask::begin(glm::ivec2 size, const GlTexture* depth, int multisample) {
+  if (size_ != size) mask_ = make_texture_2d(GL_R8, size.x, size.y, 1, false);
+  if (multisample > 1 && (size_ != size || multisample_ != multisample || !smooth_))
+    smooth_ = make_texture_multisample(GL_R8, size.x, size.y, multisample);
+  size_ = size;
+  multisample_ = multisample;
   // The depth texture may be another one than in the last frame.
-  framebuffer_ = make_framebuffer({&mask_}, depth);
+  framebuffer_ = make_framebuffer({&mask_}, multisample > 1 ? nullptr : depth);
+  if (multisample > 1) smooth_framebuffer_ = make_framebuffer({&smooth_}, depth);
   const glm::vec4 nothing(0);
-  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, &nothing.x);
+  for (const GlFramebuffer* framebuffer : {&framebuffer_, &smooth_framebuffer_})
+    if (*framebuffer) glClearNamedFramebufferfv(framebuffer->id(), GL_COLOR, 0, &nothing.x);
 }
 
 void OpticMask::draw(const RasterView& view) {
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, multisample_ > 1 ? smooth_framebuffer_.id() : framebuffer_.id());
   glUseProgram(program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
@@ -72,11 +75,26 @@ void OpticMask::draw(const RasterView& view) {
   }
 }
 
-std::vector<std::uint8_t> OpticMask::marks() const {
+std::vector<std::uint8_t> OpticMask::read() const {
+  if (multisample_ > 1)
+    glBlitNamedFramebuffer(smooth_framebuffer_.id(), framebuffer_.id(), 0, 0, size_.x, size_.y, 0, 0, size_.x,
+                           size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glGetTextureImage(mask_.id(), 0, GL_RED, GL_UNSIGNED_BYTE, static_cast<GLsizei>(mask.size()), mask.data());
-  return with_edges(mask, size_.x, size_.y);
+  return mask;
+}
+
+std::vector<std::uint8_t> OpticMask::marks() const {
+  return with_edges(read(), size_.x, size_.y);
+}
+
+std::vector<std::uint32_t> OpticMask::outline() const {
+  if (multisample_ == 1) return {};
+  const std::vector<std::uint8_t> covered = read();
+  std::vector<std::uint32_t> pixels = marked_pixels(with_edges(covered, size_.x, size_.y));
+  std::erase_if(pixels, [&](std::uint32_t pixel) { return covered[pixel] == 255; });
+  return pixels;
 }
 
 }  // namespace catoptra::render

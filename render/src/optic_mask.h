@@ -22,22 +22,28 @@ class OpticMask {
  public:
   OpticMask(const Scene& scene, const RasterScene& raster);
 
-  /// Starts an empty mask. `depth`: a depth buffer of that size, before which optics count; null: all do,
-  /// hidden or not.
-  void begin(glm::ivec2 size, const GlTexture* depth);
+  /// Starts an empty mask. `depth`: a depth buffer of that size and `multisample` places in each pixel,
+  /// before which optics count; null: all do, hidden or not.
+  void begin(glm::ivec2 size, const GlTexture* depth, int multisample = 1);
   /// Adds the optics as seen in `view`, which must be the one that RasterScene has begun last.
   void draw(const RasterView& view);
   /// Per pixel kOpticPixel where some draw shows an optic in it and in all pixels beside it, kOpticEdge where
   /// in it or in one beside it, else 0: rasteriser and ray tracer round differently, so that on the outline
   /// one may see the optic where the other does not. The ray tracer knows what to do with both.
   [[nodiscard]] std::vector<std::uint8_t> marks() const;
+  /// row * width + column of the marked pixels that optics do not cover altogether, ascending: none without
+  /// multisampling.
+  [[nodiscard]] std::vector<std::uint32_t> outline() const;
 
  private:
+  [[nodiscard]] std::vector<std::uint8_t> read() const;
+
   const Scene& scene_;
   const RasterScene& raster_;
-  GlTexture mask_;
-  GlFramebuffer framebuffer_;
+  GlTexture mask_, smooth_;  ///< the latter with several samples a pixel
+  GlFramebuffer framebuffer_, smooth_framebuffer_;
   glm::ivec2 size_{0};
+  int multisample_ = 1;
   GlProgram program_;
 };
 

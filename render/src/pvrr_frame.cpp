@@ -80,18 +80,16 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       picture.begin(options);
       update(camera, options);
       set_overlay(options);
-      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, optics_.size()), 0);
-      update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
-    for (int sample = 0; sample < options.samples; ++sample) {
-      const glm::dvec2 offset = sample_offset(sample, options.samples);
-      const bool geometry = options.geometry && sample == 0;
-      pass1_ms += gl_time_ms([&] { draw_maps(offset, geometry, overlay); });
-      pass2_ms += gl_time_ms([&] {
-        draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
-        picture.add_sample();
-      });
-    }
+    const glm::dvec2 offset = camera.offset_px;
+    pass1_ms = gl_time_ms([&] { draw_maps(offset, options.geometry, overlay); });
+    pass2_ms = gl_time_ms([&] {
+      for (const auto& pass : picture.passes(options.geometry)) {
+        if (picture.summed() == 0) count_anew();
+        draw_picture(*pass.target, camera_view(camera, size, offset), offset, pass.geometry, options);
+      }
+      picture.add_sample();
+    });
     if (options.read_back) readback_ms = gl_time_ms([&] { result.frame = picture.read_back(); });
   });
 
@@ -105,6 +103,11 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
       result.warnings.push_back(std::move(*warning));
   }
   return result;
+}
+
+void PvrrFrame::count_anew() const {
+  const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, optics_.size()), 0);
+  update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
 }
 
 std::vector<std::string> PvrrFrame::map_warnings() const {

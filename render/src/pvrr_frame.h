@@ -47,6 +47,7 @@ class PvrrFrame {
                     const FrameOptions& options);
   void draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
                   glm::dvec2 offset_px, bool geometry);
+  void count_anew() const;
   [[nodiscard]] std::vector<std::string> map_warnings() const;
   const GlProgram& mirror_program(bool geometry);
 

@@ -79,56 +79,66 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   const AtlasPlace& place = layout_.places[patch];
   const glm::ivec2 size = place.texels + 2 * place.guard;
   const optics::VirtualView guarded = with_guard(view, place.texels, place.guard);
-  views_.resize(layout_.places.size());
-  RasterView& ahead = views_[patch].view;
-  ahead = map_view(guarded, size, offset_px);
-  ahead.corner = place.corner;
-  // What is cleared is the patch's part alone.
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(place.corner.x, place.corner.y, size.x, size.y);
   RasterPass pass;
-  pass.geometry = geometry;
   // A map texel is smaller than a pixel, yet what it shows is to be as sharp as the picture, no sharper.
   pass.level_bias = static_cast<float>(std::log2(texels_per_pixel));
   pass.draw_optics = true;
   pass.except = optic;
-  if (!view.beyond_viewpoint) {
-    bind_optic_depth();
-    scene.draw_optic_depth(ahead, surface);
-    pass.clip_depth = &optic_depth_;
-    // A little farther than the surface is, so that rounding decides nothing.
-    const double farthest = surface.farthest_mm(ahead);
-    pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
-  }
-  target_->bind(geometry);
-  scene.draw(ahead, pass);
-  if (overlay) {
-    target_->bind(false);
-    overlay->draw_in_scene(ahead, pass.clip_depth);
-  }
-  views_[patch].zooming.reset();
+  views_.resize(layout_.places.size());
+  PatchViews& views = views_[patch];
+  views.view = map_view(guarded, size, offset_px);
+  views.view.corner = place.corner;
+  views.zooming.reset();
   if (view.zooms()) {
     RasterView back = zooming_view(guarded, size, offset_px);
     back.corner = place.corner;
-    if (scene.sees_anything(back, pass)) {
-      views_[patch].zooming = back;
-      draw_zooming(scene, surface, back, kBeside * view.zooming_far_mm, pass, overlay);
-    }
+    if (scene.sees_anything(back, pass)) views.zooming = back;
+  }
+  const Regions regions{scene, surface, views, view.beyond_viewpoint, kBeside * view.zooming_far_mm, overlay};
+  // What is cleared, and resolved, is the patch's part alone.
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(place.corner.x, place.corner.y, size.x, size.y);
+  const int multisample = available_multisamples(multisample_);
+  // Geometry is that of the texels' centres, and drawn on its own.
+  pass.geometry = geometry;
+  if (multisample == 1 || geometry) draw_regions(regions, pass, *target_);
+  if (multisample > 1) {
+    pass.geometry = false;
+    RasterTarget::fit(smooth_, target_->size(), false, multisample);
+    draw_regions(regions, pass, *smooth_);
+    smooth_->resolve_into(*target_);
+  } else {
+    smooth_.reset();
   }
   glDisable(GL_SCISSOR_TEST);
 }
 
-void PvrrMap::draw_zooming(RasterScene& scene, const RasterOptic& surface, const RasterView& back,
-                           double beside_mm, RasterPass pass, Overlay* overlay) {
+void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const {
+  const auto& [scene, surface, views, beyond_viewpoint, beside_mm, overlay] = regions;
+  if (!beyond_viewpoint) {
+    bind_optic_depth();
+    scene.draw_optic_depth(views.view, surface);
+    pass.clip_depth = &optic_depth_;
+    // A little farther than the surface is, so that rounding decides nothing.
+    const double farthest = surface.farthest_mm(views.view);
+    pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
+  }
+  target.bind(pass.geometry);
+  scene.draw(views.view, pass);
+  if (overlay) {
+    target.bind(false);
+    overlay->draw_in_scene(views.view, pass.clip_depth);
+  }
+  if (!views.zooming) return;
   bind_optic_depth();
-  scene.draw_zooming_optic_depth(back, surface, beside_mm);
+  scene.draw_zooming_optic_depth(*views.zooming, surface, beside_mm);
   pass.clip_depth = &optic_depth_;
   pass.clip_reach_mm = optics::kInfinity;
-  target_->bind(pass.geometry);
-  scene.draw_bodies(back, pass);
+  target.bind(pass.geometry);
+  scene.draw_bodies(*views.zooming, pass);
   if (!overlay) return;
-  target_->bind(false);
-  overlay->draw_in_scene(back, pass.clip_depth);
+  target.bind(false);
+  overlay->draw_in_scene(*views.zooming, pass.clip_depth);
 }
 
 std::vector<RasterView> PvrrMap::views() const {

@@ -45,6 +45,9 @@ class PvrrMap {
   /// Renews the textures where their size is not that of the layout.
   void resize(const AtlasLayout& layout, bool geometry);
 
+  /// From the next draw() on, outlines get so many samples a texel, as far as the driver has them.
+  void set_multisample(int samples) { multisample_ = samples; }
+
   /// A small black map, for an optic of which no reflecting side is seen.
   void set_empty(bool geometry);
 
@@ -74,11 +77,20 @@ class PvrrMap {
     std::optional<RasterView> zooming;
   };
   void bind_optic_depth() const;
-  void draw_zooming(RasterScene& scene, const RasterOptic& surface, const RasterView& back, double beside_mm,
-                    RasterPass pass, Overlay* overlay);
+  /// What the map of one patch shows, and with what on top.
+  struct Regions {
+    RasterScene& scene;
+    const RasterOptic& surface;
+    const PatchViews& views;
+    bool beyond_viewpoint;
+    double beside_mm;
+    Overlay* overlay;
+  };
+  void draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const;
 
   AtlasLayout layout_;
-  std::unique_ptr<RasterTarget> target_;
+  std::unique_ptr<RasterTarget> target_, smooth_;  ///< the latter with several samples a texel, or null
+  int multisample_ = 1;
   GlTexture optic_depth_;
   glm::ivec2 optic_depth_size_{0, 0};
   GlFramebuffer optic_depth_framebuffer_;

@@ -87,6 +87,7 @@ void PvrrOptic::place(const optics::Placement& placement) {
 
 void PvrrOptic::update(const RasterView& camera, const FrameOptions& options) {
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
+  multisample_ = options.multisample;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
   if (!faces_eye_) {
@@ -233,17 +234,17 @@ std::vector<std::vector<glm::dvec3>> PvrrOptic::lens_coordinates() const {
 void PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   if (!faces_eye_) return;
   const glm::dvec2 offset = map_offset(offset_px);
-  if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
+  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_};
+  if (!overlay && drawn_ == wanted) return;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
+  map_.set_multisample(wanted.multisample);  // overlays are drawn over the map as it is
   for (std::size_t patch = 0; patch < views_.size(); ++patch)
     map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
               map_sizes_[patch].texels_per_pixel, offset, geometry, overlay);
-  if (overlay)
-    drawn_.reset();
-  else
-    drawn_ = {offset, geometry};
+  drawn_ = wanted;
+  if (overlay) drawn_.reset();
 }
 
 void PvrrOptic::set_map(std::size_t patch, glm::dvec2 offset_px, bool geometry) const {

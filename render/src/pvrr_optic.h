@@ -148,9 +148,12 @@ class PvrrOptic {
   struct Drawn {
     glm::dvec2 offset_px;
     bool geometry;
+    int multisample;
+    bool operator==(const Drawn&) const = default;
   };
   std::optional<Drawn> drawn_;  ///< what the maps hold
   PvrrMap map_;
+  int multisample_ = 1;
   std::size_t traced_rays_ = 0, scene_rays_ = 0, refinement_rays_ = 0;
 };
 

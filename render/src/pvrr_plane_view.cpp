@@ -84,8 +84,9 @@ std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView
   view.direction = -optics::reflect(axes[2], normal);
 
   // Pixel coordinates to tangents, as the camera has them.
-  const auto tangent_x = [&](double x) { return (2 * x / camera.size.x - 1) / camera.projection[0][0]; };
-  const auto tangent_y = [&](double y) { return (1 - 2 * y / camera.size.y) / camera.projection[1][1]; };
+  const glm::dmat4& p = camera.projection;
+  const auto tangent_x = [&](double x) { return (2 * x / camera.size.x - 1 + p[2][0]) / p[0][0]; };
+  const auto tangent_y = [&](double y) { return (1 - 2 * y / camera.size.y + p[2][1]) / p[1][1]; };
   view.left = -tangent_x(box->end.x);
   view.right_side = -tangent_x(box->begin.x);
   view.bottom = tangent_y(box->end.y);

@@ -3,21 +3,25 @@
 #include <glm/geometric.hpp>
 
 namespace catoptra::render {
-namespace {
-
-constexpr GLint kWeight = 2;  // as in raster_accumulate.frag.glsl
-
-}  // namespace
-
 RasterPicture::RasterPicture()
     : nothing_(make_vertex_array({})),
       accumulate_(make_program({"raster_accumulate.vert.glsl"}, {"raster_accumulate.frag.glsl"})) {}
+
+void RasterPicture::start_sum() {
+  summing_ = true;
+  summed_ = 0;
+}
 
 void RasterPicture::begin(const FrameOptions& options) {
   options_ = options;
   const glm::ivec2 size(options.width, options.height);
   RasterTarget::fit(target_, size, options.geometry);
-  if (options.samples <= 1) return;
+  const int multisample = available_multisamples(options.multisample);
+  if (multisample > 1)
+    RasterTarget::fit(smooth_, size, false, multisample);
+  else
+    smooth_.reset();
+  if (!summing_ || summed_ > 0) return;
   if (sum_size_ != size) {
     sum_ = make_texture_2d(GL_RGBA32F, size.x, size.y, 1, false);
     sum_framebuffer_ = make_framebuffer({&sum_}, nullptr);
@@ -27,15 +31,22 @@ void RasterPicture::begin(const FrameOptions& options) {
   glClearNamedFramebufferfv(sum_framebuffer_.id(), GL_COLOR, 0, &zero.x);
 }
 
+std::vector<RasterPicture::Pass> RasterPicture::passes(bool geometry) const {
+  if (!smooth_) return {{target_.get(), geometry}};
+  if (!geometry) return {{smooth_.get(), false}};
+  return {{target_.get(), true}, {smooth_.get(), false}};
+}
+
 void RasterPicture::add_sample() {
-  if (options_.samples <= 1) return;
+  if (smooth_) smooth_->resolve_into(*target_);
+  if (!summing_) return;
+  ++summed_;
   glBindFramebuffer(GL_FRAMEBUFFER, sum_framebuffer_.id());
   glViewport(0, 0, sum_size_.x, sum_size_.y);
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glUseProgram(accumulate_.id());
-  glUniform1f(kWeight, 1.0f / float(options_.samples));
   glBindTextureUnit(0, target_->color().id());
   glBindVertexArray(nothing_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -47,8 +58,9 @@ Frame RasterPicture::read_color() const {
   Frame frame;
   frame.width = options_.width;
   frame.height = options_.height;
-  frame.color = read_texture(options_.samples > 1 ? sum_ : target_->color(), target_->size());
-  for (glm::vec4& pixel : frame.color) pixel.w = 1;
+  frame.color = read_texture(summing_ ? sum_ : target_->color(), target_->size());
+  const float share = summing_ ? 1 / float(summed_) : 1;
+  for (glm::vec4& pixel : frame.color) pixel = glm::vec4(share * glm::vec3(pixel), 1);
   return frame;
 }
 

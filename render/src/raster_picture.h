@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <memory>
+#include <vector>
 
 #include "render/frame.h"
 #include "render/src/raster_target.h"
@@ -16,26 +17,43 @@ class RasterPicture {
  public:
   RasterPicture();
 
-  /// Starts a picture of the options' size, with no sample yet.
+  /// From now on every picture is summed up with those before it, until stop_sum().
+  void start_sum();
+  void stop_sum() { summing_ = false; }
+  /// Pictures in the sum; 0 where nothing is summed.
+  [[nodiscard]] int summed() const { return summing_ ? summed_ : 0; }
+
+  /// Starts a picture of the options' size, which the pictures of a sum have in common.
   void begin(const FrameOptions& options);
-  /// What the samples are drawn into.
+  /// What holds it, and its geometry.
   [[nodiscard]] const RasterTarget& target() const { return *target_; }
-  /// Takes over what the target holds as one of options.samples equally weighted samples.
+  /// What it has to be drawn into, one after the other: with multisampling, geometry is drawn on its own, at
+  /// the pixels' centres.
+  struct Pass {
+    const RasterTarget* target;
+    bool geometry;
+  };
+  [[nodiscard]] std::vector<Pass> passes(bool geometry) const;
+  /// Samples of each pixel's outlines, as many as the driver has of those asked for.
+  [[nodiscard]] int multisample() const { return smooth_ ? smooth_->multisample() : 1; }
+  /// Takes over what has been drawn.
   void add_sample();
 
   /// Sets position, surface, direction and optic_id of `frame` to what the target holds of them.
   void read_geometry(Frame& frame) const;
 
-  /// The mean of the samples.
+  /// The picture, or the mean of those in the sum.
   [[nodiscard]] Frame read_color() const;
-  /// The mean of the samples, and the geometry that sample 0 has left in the target, where the options ask
-  /// for it.
+  /// The same, and the geometry that the last one has left in the target, where its options ask for it.
   [[nodiscard]] Frame read_back() const;
 
  private:
   FrameOptions options_;
   std::unique_ptr<RasterTarget> target_;
-  GlTexture sum_;  ///< RGBA32F, only with several samples
+  std::unique_ptr<RasterTarget> smooth_;  ///< with several samples a pixel; null without multisampling
+  bool summing_ = false;
+  int summed_ = 0;
+  GlTexture sum_;  ///< RGBA32F, of the first sum on
   GlFramebuffer sum_framebuffer_;
   glm::ivec2 sum_size_{0};
   GlVertexArray nothing_;

@@ -17,8 +17,15 @@ void check_size(glm::ivec2 size) {
 
 }  // namespace
 
-RasterTarget::RasterTarget(glm::ivec2 size, bool geometry) : size_(size) {
+RasterTarget::RasterTarget(glm::ivec2 size, bool geometry, int multisample)
+    : size_(size), multisample_(multisample) {
   check_size(size);
+  if (multisample > 1) {
+    color_ = make_texture_multisample(GL_RGBA16F, size.x, size.y, multisample);
+    depth_ = make_texture_multisample(GL_DEPTH_COMPONENT32F, size.x, size.y, multisample);
+    color_only_ = make_framebuffer({&color_}, &depth_);
+    return;
+  }
   color_ = make_texture_2d(GL_RGBA16F, size.x, size.y, 1, true);
   depth_ = make_texture_2d(GL_DEPTH_COMPONENT32F, size.x, size.y, 1, false);
   color_only_ = make_framebuffer({&color_}, &depth_);
@@ -28,13 +35,20 @@ RasterTarget::RasterTarget(glm::ivec2 size, bool geometry) : size_(size) {
   with_geometry_ = make_framebuffer({&color_, &position_, &detail_}, &depth_);
 }
 
-void RasterTarget::fit(std::unique_ptr<RasterTarget>& target, glm::ivec2 size, bool geometry) {
-  if (!target || target->size_ != size || (geometry && !target->position_))
-    target = std::make_unique<RasterTarget>(size, geometry);
+void RasterTarget::fit(std::unique_ptr<RasterTarget>& target, glm::ivec2 size, bool geometry,
+                       int multisample) {
+  if (!target || target->size_ != size || target->multisample_ != multisample ||
+      (geometry && !target->position_))
+    target = std::make_unique<RasterTarget>(size, geometry, multisample);
 }
 
 void RasterTarget::bind(bool geometry) const {
   glBindFramebuffer(GL_FRAMEBUFFER, geometry ? with_geometry_.id() : color_only_.id());
+}
+
+void RasterTarget::resolve_into(const RasterTarget& target) const {
+  glBlitNamedFramebuffer(color_only_.id(), target.color_only_.id(), 0, 0, size_.x, size_.y, 0, 0, size_.x,
+                         size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 std::vector<glm::vec4> read_texture(const GlTexture& texture, glm::ivec2 size) {

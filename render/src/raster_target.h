@@ -16,15 +16,21 @@ namespace catoptra::render {
 class RasterTarget {
  public:
   /// Throws catoptra::Error where the size is beyond what the driver can draw.
-  RasterTarget(glm::ivec2 size, bool geometry);
+  /// With `multisample` above 1, colour and depth have so many samples a pixel, and there is no geometry.
+  RasterTarget(glm::ivec2 size, bool geometry, int multisample = 1);
 
-  /// The target again if it has that size and (at least) that geometry, else a new one.
-  static void fit(std::unique_ptr<RasterTarget>& target, glm::ivec2 size, bool geometry);
+  /// The target again if it has that size, that number of samples and (at least) that geometry, else a new
+  /// one.
+  static void fit(std::unique_ptr<RasterTarget>& target, glm::ivec2 size, bool geometry, int multisample = 1);
 
   /// Draws go into colour alone, or with geometry; both with the same depth buffer.
   void bind(bool geometry) const;
 
+  /// The mean of each pixel's samples becomes the colour of `target`, which has the same size and one sample.
+  void resolve_into(const RasterTarget& target) const;
+
   [[nodiscard]] glm::ivec2 size() const { return size_; }
+  [[nodiscard]] int multisample() const { return multisample_; }
   [[nodiscard]] const GlTexture& color() const { return color_; }
   [[nodiscard]] const GlTexture& position() const { return position_; }
   [[nodiscard]] const GlTexture& detail() const { return detail_; }
@@ -32,6 +38,7 @@ class RasterTarget {
 
  private:
   glm::ivec2 size_;
+  int multisample_ = 1;
   GlTexture color_, position_, detail_, depth_;
   GlFramebuffer color_only_, with_geometry_;
 };

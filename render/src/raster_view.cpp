@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "cad_import/error.h"
+#include "render/src/sampling.h"
 
 namespace catoptra::render {
 namespace {
@@ -82,18 +82,15 @@ optics::VirtualView placed(optics::VirtualView view, const optics::Placement& pl
 }
 
 RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px) {
-  const glm::dvec3 ahead = camera.target_mm - camera.eye_mm;
-  const glm::dvec3 across = glm::cross(ahead, camera.up);
-  if (!(glm::length(across) > 1e-12 * glm::length(ahead) * glm::length(camera.up)))
-    throw Error({}, "camera", "looks along its own up vector, or at its own eye", "change target or up");
-  if (!(camera.fov_rad > 0 && camera.fov_rad < 3.141592))
-    throw Error({}, "camera", "field of view is not between 0 and 180 degrees");
-  const glm::dvec3 direction = glm::normalize(ahead), right = glm::normalize(across);
+  const CameraAxes axes = camera_axes(camera);
   const double tan_half = std::tan(camera.fov_rad / 2);
   RasterView view;
   view.origin_mm = camera.eye_mm;
-  view.rotation = rotation_from_axes(right, glm::cross(right, direction), direction);
+  view.rotation = rotation_from_axes(axes.right, axes.up, axes.forward);
   view.projection = infinite_perspective(tan_half * size.x / size.y, tan_half, kCameraNear);
+  // Eye space has z = -1 where the tangents are x and y: see directions().
+  view.projection[2][0] = view.projection[0][0] * camera.shift.x;
+  view.projection[2][1] = view.projection[1][1] * camera.shift.y;
   view.size = size;
   offset_samples(view.projection, size, offset_px);
   return view;

@@ -39,8 +39,8 @@ struct RasterView {
 [[nodiscard]] RasterView in_own_frame(RasterView view, const optics::Placement& placement);
 [[nodiscard]] optics::VirtualView placed(optics::VirtualView view, const optics::Placement& placement);
 
-/// The picture's view: infinite far plane, near plane at kCameraNear. `offset_px` moves the place in every
-/// pixel at which the scene is sampled (x right, y down, see sampling.h).
+/// The picture's view, camera.shift included: infinite far plane, near plane at kCameraNear. `offset_px`
+/// moves the place in every pixel at which the scene is sampled: of a sample camera.offset_px.
 [[nodiscard]] RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px = {0, 0});
 
 /// The reflection map's view; `offset_px` as above, in texels. Where it also shows a zooming region, the

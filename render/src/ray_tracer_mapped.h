@@ -16,7 +16,6 @@ namespace catoptra::render {
 /// One sample of a picture whose optics take their colours from maps as far as these know them.
 struct MappedSample {
   const MapColors& maps;
-  int sample = 0;
   std::span<const std::uint8_t> marks;  ///< per pixel; where all of a packet are kOpticPixel, nothing stands
                                         ///< before the optics; or empty
   std::span<std::uint8_t> traced;       ///< per pixel, set to 1: an optic shows there what no map knows

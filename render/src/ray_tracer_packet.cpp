@@ -337,7 +337,7 @@ std::size_t PacketTracer::trace_mapped(const PacketView& view, const FrameOption
                                        const PixelPacket& pixels, const MappedSample& mapped,
                                        Frame& frame) const {
   Packet p;
-  const std::size_t rays = trace_sample(view, options, pixels, mapped.sample, &mapped, frame, p);
+  const std::size_t rays = trace_sample(view, options, pixels, 0, &mapped, frame, p);
   const float share = 1 / float(std::max(1, options.samples));
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i]) continue;

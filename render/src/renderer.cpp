@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@
 #include "render/src/pvrr_frame.h"
 #include "render/src/raster_scene.h"
 #include "render/src/ray_tracer.h"
+#include "render/src/sample_mean.h"
+#include "render/src/sampling.h"
 #include "render/src/shading.h"
 #include "render/src/textures.h"
 #include "render/src/wrong_share.h"
@@ -58,6 +61,20 @@ void drop_geometry(Frame& frame) {
   frame.surface.clear();
   frame.direction.clear();
   frame.optic_id.clear();
+}
+
+void check_options(const Scene& scene, const Camera& camera, const FrameOptions& options) {
+  if (options.width < 1 || options.height < 1 || options.samples < 1)
+    throw Error(scene.file, "resolution",
+                "cannot make a picture of " + std::to_string(options.width) + " x " +
+                    std::to_string(options.height) + " pixels with " + std::to_string(options.samples) +
+                    " samples");
+  if (!(camera.pupil_mm >= 0) || !(camera.focus_mm >= 0) || !std::isfinite(camera.pupil_mm + camera.focus_mm))
+    throw Error(scene.file, "camera", "pupil and focus cannot be negative",
+                "0 stands for a point, and for the target");
+  const int m = options.multisample;
+  if (m != 1 && m != 2 && m != 4 && m != 8)
+    throw Error(scene.file, "multisample", std::to_string(m) + " is not 1, 2, 4 or 8");
 }
 
 /// Everything that lives on the GPU. Members go in reverse order, with the context current (see ~Impl).
@@ -107,14 +124,16 @@ struct Renderer::Impl {
     }
   }
 
-  RenderResult render_on_gpu(Mode mode, const Camera& camera, const FrameOptions& options) {
+  /// Samples until there are `until` of them, and their mean.
+  RenderResult render_until(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
+    if (mode == Mode::raytrace) return draw_samples(mode, camera, options, until);
     if (!context) context = GlContext::create();
     const GlScope scope(*context);
     if (!gpu) {
       gpu = std::make_unique<Gpu>(scene, textures, rays, bounds());
       for (std::size_t i = 0; i < placements.size(); ++i) place_on_gpu(i);
     }
-    RenderResult result = draw(mode, camera, options);
+    RenderResult result = draw_samples(mode, camera, options, until);
     context->throw_if_errors();
     return result;
   }
@@ -139,8 +158,8 @@ struct Renderer::Impl {
 
   RenderResult render(Mode mode, const Camera& camera, const FrameOptions& options) {
     if (mode == Mode::automatic) return render_automatically(camera, options);
-    return mode == Mode::raytrace ? placed_tracer().render(camera, options)
-                                  : render_on_gpu(mode, camera, options);
+    samples.restart();
+    return render_until(mode, camera, options, options.samples);
   }
 
   /// A picture by the mode that the chooser takes, and before it the small ones from which that predicts.
@@ -185,8 +204,33 @@ struct Renderer::Impl {
     return {std::move(result), cost};
   }
 
+  RenderResult draw_samples(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
+    RasterPicture* const picture = gpu ? &gpu->picture : nullptr;
+    if (picture && samples.count() == 0) picture->stop_sum();
+    if (options.samples == 1) {
+      RenderResult result = draw(mode, sample_camera(camera, 0, 1), options);
+      if (mode != Mode::raytrace && gpu->picture.multisample() < options.multisample)
+        result.warnings.push_back("the driver has " + std::to_string(gpu->picture.multisample()) +
+                                  " of the " + std::to_string(options.multisample) +
+                                  " multisamples asked for");
+      if (camera.pupil_mm > 0)
+        result.warnings.emplace_back(
+            "the camera's pupil blurs nothing in a picture of one sample per pixel; use more samples");
+      return result;
+    }
+    // The other modes put their pictures together on the CPU.
+    RasterPicture* const on_gpu = mode == Mode::pvrr || mode == Mode::cubemap ? picture : nullptr;
+    samples.add(camera, options, until, on_gpu, [&](const Camera& seen, const FrameOptions& of_sample) {
+      return draw(mode, seen, of_sample);
+    });
+    return samples.mean(options, on_gpu);
+  }
+
+  /// One sample, or with hardware multisampling one picture.
   RenderResult draw(Mode mode, const Camera& camera, const FrameOptions& options) {
     switch (mode) {
+      case Mode::raytrace:
+        return placed_tracer().render(camera, options);
       case Mode::hybrid:
         return gpu->hybrid.render(camera, options, gpu->picture, placed_tracer());
       case Mode::exact:
@@ -250,21 +294,60 @@ struct Renderer::Impl {
 
   std::optional<ModeChooser> chooser;  ///< of mode automatic, from its first picture on
   std::optional<Camera> last_camera;   ///< mode automatic: of the last picture, where nothing has moved since
+
+  /// Of the picture that accumulate() goes on with, as long as the same one is asked for.
+  SampleMean samples;
+  struct Accumulated {
+    Mode mode;
+    Camera camera;
+    FrameOptions options;
+    bool operator==(const Accumulated&) const = default;
+  };
+  std::optional<Accumulated> accumulated;
+  Mode accumulated_mode = Mode::pvrr;  ///< which draws it
+
+  /// What mode automatic takes for a picture of one sample: the samples of a picture all have the same mode.
+  Mode chosen_mode(const Camera& camera, FrameOptions options) {
+    options.samples = 1;
+    options.geometry = options.read_back = false;
+    return render_automatically(camera, options).choice->mode;
+  }
+
+  void stop_accumulating() {
+    accumulated.reset();
+    samples.restart();
+  }
 };
 
 Renderer::Renderer(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 Renderer::~Renderer() = default;
 
 RenderResult Renderer::render(Mode mode, const Camera& camera, const FrameOptions& options) {
-  if (options.width < 1 || options.height < 1 || options.samples < 1)
-    throw Error(impl_->scene.file, "resolution",
-                "cannot make a picture of " + std::to_string(options.width) + " x " +
-                    std::to_string(options.height) + " pixels with " + std::to_string(options.samples) +
-                    " samples");
+  check_options(impl_->scene, camera, options);
+  impl_->stop_accumulating();
   return impl_->render(mode, camera, options);
 }
 
+RenderResult Renderer::accumulate(Mode mode, const Camera& camera, const FrameOptions& options, int more) {
+  check_options(impl_->scene, camera, options);
+  const Impl::Accumulated asked{mode, camera, options};
+  if (impl_->accumulated != asked) {
+    impl_->stop_accumulating();
+    impl_->accumulated_mode = mode == Mode::automatic ? impl_->chosen_mode(camera, options) : mode;
+    impl_->samples.restart();
+    impl_->accumulated = asked;
+  }
+  const int until = std::min(impl_->samples.count() + std::max(more, 1), options.samples);
+  try {
+    return impl_->render_until(impl_->accumulated_mode, camera, options, until);
+  } catch (...) {
+    impl_->stop_accumulating();
+    throw;
+  }
+}
+
 void Renderer::optic_changed(std::size_t index) {
+  impl_->stop_accumulating();
   const optics::Optic& optic = impl_->scene.optics.at(index);
   impl_->optic_boxes[index] = bounds_of(optic);
   impl_->last_camera.reset();
@@ -286,6 +369,7 @@ void Renderer::optic_changed(std::size_t index) {
 void Renderer::place_optic(std::size_t index, const glm::dmat4& placement) {
   const auto placed = optics::placement_from_matrix(placement, impl_->scene.optics.at(index).name);
   if (placed == impl_->placements[index]) return;
+  impl_->stop_accumulating();
   impl_->placements[index] = placed;
   impl_->last_camera.reset();
   impl_->untraced[index] = true;
