@@ -138,6 +138,17 @@ TEST(RenderCommand, ReferencePassesFailsOrIsMissing) {
             1);
 }
 
+TEST(RenderCommand, OverlaysOfVertexRaysAreRefusedInModeExact) {
+  const TemporaryFolder folder;
+  const std::string scene = write_test_scene(folder).string();
+  for (const char* overlay : {"vertices", "rays"}) {
+    const CommandResult result = run_catoptra(
+        {"render", scene, "-o", (folder / "no.png").string(), "--mode", "exact", "--overlay", overlay});
+    EXPECT_EQ(result.code, 2) << result.errors;
+    EXPECT_NE(result.errors.find("belongs to mode 'pvrr'"), std::string::npos) << result.errors;
+  }
+}
+
 TEST(RenderCommand, OverlaysChangeThePicture) {
   const TemporaryFolder folder;
   const std::string scene = write_test_scene(folder).string();
