@@ -170,9 +170,10 @@ optics::Optic facing_mirror() {
   return optic;
 }
 
-// Each of two mirrors shows the other as a plain body of its reflectance, as the ray tracer does.
+// At depth 1 each of two mirrors shows the other as a plain body of its reflectance, as the ray tracer does.
 TEST(PvrrTwoMirrors, EachShowsTheOtherAsADiffuseBody) {
   Scene scene = room();
+  scene.settings.depth = 1;
   scene.optics = {conic_mirror(0, 0, 170, 110, 3, 3), facing_mirror()};
   scene.optics[1].reflectance = {0.9f, 0.5f, 0.1f};
   scene.camera.eye_mm = {-250, 100, 700};
