@@ -37,7 +37,7 @@ function batchHistogram(batch, done) {
   if (column < 0) return null;
   const values = done.map((row) => row[column]).filter(isNumber);
   return figure("How often", batch.columns[column].title, [{type: "histogram", x: values, marker: {color: "#5b87c7"}, hovertemplate: "%{x}: %{y} cases<extra></extra>"}],
-                {xaxis: {title: {text: batch.columns[column].title}}, yaxis: {title: {text: "cases"}}, bargap: 0.05});
+                {xaxis: {title: {text: batch.columns[column].title}, ticks: "outside"}, yaxis: {title: {text: "cases"}, ticks: "outside"}, bargap: 0.05});
 }
 
 /** Maps of one lens at a time. */
