@@ -45,12 +45,23 @@ struct OpticStats {
   std::size_t shown_pixels = 0, retraced_pixels = 0;
 };
 
+/// Mode pvrr: one reflection or refraction map, of an optic in the picture or in another one's map.
+struct MapStats {
+  std::string way;     ///< names of the optics from the eye on, joined by " > "; the map is the last one's
+  int level = 1;       ///< number of optics on that way
+  bool drawn = false;  ///< in this frame; false: kept
+  std::size_t texels = 0;
+  std::size_t rays = 0;        ///< reflected or refracted for it in this frame
+  std::size_t scene_rays = 0;  ///< sent into the scene from there
+};
+
 /// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "retrace", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;
   std::map<std::string, double> time_ms;
-  std::size_t rays = 0;  ///< all rays of the frame
+  std::size_t rays = 0;        ///< all rays of the frame
+  std::vector<MapStats> maps;  ///< mode pvrr: all maps, level by level
 };
 
 struct RenderResult {

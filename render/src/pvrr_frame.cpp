@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "render/src/lens_rays.h"
-#include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
 
 namespace catoptra::render {
@@ -30,28 +29,18 @@ double length_in_map(const optics::VirtualView& view, const PvrrMapSize& size, c
 
 PvrrFrame::PvrrFrame(const Scene& scene, RasterScene& raster, const optics::RayScene& rays,
                      const cad_import::BoundingBox& bounds)
-    : scene_(scene), raster_(raster) {
-  for (std::size_t i = 0; i < scene.optics.size(); ++i) patches_.emplace_back(scene, i, raster, rays, bounds);
+    : scene_(scene), raster_(raster), stack_(scene, raster, rays, bounds) {
   outside_counter_ =
       make_dynamic_buffer(sizeof(std::uint32_t) * std::max<std::size_t>(1, scene.optics.size()));
 }
 
 void PvrrFrame::optic_changed(std::size_t index, const cad_import::BoundingBox& bounds) {
-  patches_[index].optic_changed();
-  bounds_changed(bounds);
+  stack_.optic_changed(index, bounds);
 }
 
 void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placement,
                             const cad_import::BoundingBox& bounds) {
-  patches_[index].place(placement);
-  bounds_changed(bounds);
-}
-
-void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
-  for (PvrrPatch& patch : patches_) {
-    patch.set_bounds(bounds);
-    patch.map_changed();
-  }
+  stack_.place_optic(index, placement, bounds);
 }
 
 RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture,
@@ -66,17 +55,15 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
     trace_ms = gl_time_ms([&] {
       picture.begin(drawn);
       const RasterView view = camera_view(camera, size);
-      for (PvrrPatch& patch : patches_) patch.update(view, drawn);
+      stack_.update(view, drawn);
       set_overlay(options);
-      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, patches_.size()), 0);
+      const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, stack_.size()), 0);
       update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
     });
     for (int sample = 0; sample < options.samples; ++sample) {
       const glm::dvec2 offset = sample_offset(sample, options.samples);
       const bool geometry = drawn.geometry && (sample == 0 || sample_done);
-      pass1_ms += gl_time_ms([&] {
-        for (PvrrPatch& patch : patches_) patch.draw_map(offset, geometry, overlay);
-      });
+      pass1_ms += gl_time_ms([&] { stack_.draw_maps(offset, geometry, overlay); });
       pass2_ms += gl_time_ms([&] {
         draw_picture(picture.target(), camera_view(camera, size, offset), offset, geometry, options);
         picture.add_sample();
@@ -92,14 +79,15 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.stats.time_ms = {{"trace", trace_ms}, {"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   result.warnings = map_warnings();
-  for (const PvrrPatch& patch : patches_)
-    if (auto warning = patch.warning()) result.warnings.push_back(std::move(*warning));
+  for (std::size_t i = 0; i < stack_.size(); ++i)
+    if (auto warning = stack_.patch(i).warning()) result.warnings.push_back(std::move(*warning));
+  for (std::string& warning : stack_.warnings()) result.warnings.push_back(std::move(warning));
   return result;
 }
 
 std::vector<std::string> PvrrFrame::map_warnings() const {
   std::vector<std::string> warnings;
-  std::vector<std::uint32_t> outside(patches_.size(), 0);
+  std::vector<std::uint32_t> outside(stack_.size(), 0);
   if (!outside.empty())
     glGetNamedBufferSubData(outside_counter_.id(), 0,
                             static_cast<GLsizeiptr>(outside.size() * sizeof(std::uint32_t)), outside.data());
@@ -115,7 +103,8 @@ std::vector<std::string> PvrrFrame::map_warnings() const {
 void PvrrFrame::set_overlay(const FrameOptions& options) {
   std::vector<OverlayBall> balls;
   std::vector<OverlayLine> lines;
-  for (const PvrrPatch& patch : patches_) {
+  for (std::size_t i = 0; i < stack_.size(); ++i) {
+    const PvrrPatch& patch = stack_.patch(i);
     if (!patch.faces_eye()) continue;
     for (const optics::VertexHit& hit : patch.hits()) {
       if (!passes(hit)) continue;
@@ -140,70 +129,43 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   target.bind(geometry);
   raster_.clear(camera, pass);
   // First the optics, which hide much and cost little.
-  for (std::size_t i = 0; i < patches_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
+  for (std::size_t i = 0; i < stack_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
   raster_.draw_all(camera, pass);
   if (!options.overlay_vertices && !options.overlay_rays) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   target.bind(false);
   overlay_.draw_in_scene(camera, nullptr);
   if (!options.overlay_vertices) return;
-  for (const PvrrPatch& patch : patches_) overlay_.draw_mesh(camera, patch.seen_surface());
+  for (std::size_t i = 0; i < stack_.size(); ++i) overlay_.draw_mesh(camera, stack_.patch(i).seen_surface());
 }
 
 void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const RasterView& camera,
                            glm::dvec2 offset_px, bool geometry) {
-  const PvrrPatch& patch = patches_[index];
-  const optics::Optic& optic = scene_.optics[index];
   glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, outside_counter_.id(),
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
-  if (optic.kind == optics::OpticKind::lens) {
-    patch.lens().draw(camera, target, geometry, LensLook::map, lens_programs_, optic, index,
-                      scene_.environment.ambient,
-                      [&](bool with_geometry) { patch.set_map(offset_px, with_geometry); });
-    return;
-  }
-  glUseProgram(mirror_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, patch.seen_surface());
-  set_optic_uniforms(optic, index);
-  patch.set_map(offset_px, geometry);
-  patch.seen_surface().draw_surface();
+  stack_.drawer().draw(stack_.patch(index), index, target, camera, offset_px, {geometry, false, false});
 }
 
 bool PvrrFrame::draw_extreme_geometry(const RasterTarget& target, const RasterView& view,
                                       glm::dvec2 offset_px, std::size_t extreme) {
   bool any = false;
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const PvrrPatch& patch = patches_[i];
+  for (std::size_t i = 0; i < stack_.size(); ++i) {
+    const PvrrPatch& patch = stack_.patch(i);
     if (scene_.optics[i].kind != optics::OpticKind::lens || !patch.faces_eye()) continue;
     const auto samples = extreme_samples(patch.lens().sample_count());
     if (extreme >= samples.size()) continue;
     any = true;
-    patch.lens().draw_geometry(view, target, samples[extreme], lens_programs_, i,
-                               [&](bool geometry) { patch.set_map(offset_px, geometry); });
+    stack_.drawer().draw_lens_geometry(patch, i, target, view, offset_px, samples[extreme]);
   }
   return any;
 }
 
 FrameStats PvrrFrame::statistics() const {
   FrameStats stats;
-  for (const PvrrPatch& patch : patches_) {
-    stats.optics.push_back(patch.statistics());
-    stats.rays += stats.optics.back().scene_rays;
-  }
+  for (std::size_t i = 0; i < stack_.size(); ++i) stats.optics.push_back(stack_.patch(i).statistics());
+  stats.maps = stack_.statistics();
+  for (const MapStats& map : stats.maps) stats.rays += map.scene_rays;
   return stats;
-}
-
-const GlProgram& PvrrFrame::mirror_program(bool geometry) {
-  const auto found = mirror_programs_.find(geometry);
-  if (found != mirror_programs_.end()) return found->second;
-  std::vector<std::string> defines = raster_.shading_defines();
-  if (geometry) defines.emplace_back("GEOMETRY");
-  return mirror_programs_
-      .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                       "raster_optic.glsl", "pvrr_optic.frag.glsl"},
-                                      defines))
-      .first->second;
 }
 
 }  // namespace catoptra::render

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "render/frame.h"
 #include "render/src/overlay_vertices.h"
-#include "render/src/pvrr_patch.h"
-#include "render/src/raster_lens.h"
+#include "render/src/pvrr_stack.h"
 #include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
 
@@ -42,7 +40,6 @@ class PvrrFrame {
                              std::size_t extreme);
 
  private:
-  void bounds_changed(const cad_import::BoundingBox& bounds);
   void set_overlay(const FrameOptions& options);
   void draw_picture(const RasterTarget& target, const RasterView& camera, glm::dvec2 offset_px, bool geometry,
                     const FrameOptions& options);
@@ -50,15 +47,12 @@ class PvrrFrame {
                   glm::dvec2 offset_px, bool geometry);
   [[nodiscard]] std::vector<std::string> map_warnings() const;
   [[nodiscard]] FrameStats statistics() const;
-  const GlProgram& mirror_program(bool geometry);
 
   const Scene& scene_;
   RasterScene& raster_;
-  std::vector<PvrrPatch> patches_;  ///< one per optic
+  PvrrStack stack_;
   Overlay overlay_;
   GlBuffer outside_counter_;
-  std::map<bool, GlProgram> mirror_programs_;
-  LensPrograms lens_programs_;
 };
 
 }  // namespace catoptra::render

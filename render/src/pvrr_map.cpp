@@ -68,7 +68,8 @@ void PvrrMap::set_empty(bool geometry) {
 }
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry) {
+                   const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry,
+                   const NestedOptics* nested) {
   view_ = map_view(view, size_.texels, offset_px);
   clipped_ = !view.beyond_viewpoint;
   if (clipped_) {
@@ -85,8 +86,11 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   pass.draw_optics = true;
   pass.except = optic;
+  if (nested) pass.nested = nested->optics;
   target_->bind(geometry);
-  scene.draw(view_, pass);
+  scene.clear(view_, pass);
+  if (nested && !nested->optics.empty()) nested->draw(view_, pass, *target_);
+  scene.draw_all(view_, pass);
 }
 
 }  // namespace catoptra::render

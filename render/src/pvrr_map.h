@@ -1,9 +1,11 @@
 // PVRR pass 1: the reflection map of one optic (paper 3.1, step 2; design 2.3 and 2.6).
 #pragma once
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "optics/virtual_view.h"
 #include "render/src/raster_scene.h"
@@ -36,6 +38,13 @@ struct PvrrMapSize {
   return choose_map_size(mirror.mesh, pixels, coordinates, view, picture, texels_per_pixel);
 }
 
+/// Optics that a map shows with maps of their own.
+struct NestedOptics {
+  std::vector<std::size_t> optics;
+  /// Draws them into the map, which is bound, as the pass says.
+  std::function<void(const RasterView& view, const RasterPass& pass, const RasterTarget& target)> draw;
+};
+
 class PvrrMap {
  public:
   /// Renews the textures where their size is not that of `size`.
@@ -47,9 +56,10 @@ class PvrrMap {
   /// Draws the surroundings as the virtual viewpoint sees them, with the other mirrors as diffuse bodies.
   /// What lies between viewpoint and `surface`, the last that the light meets (that is, behind the mirror, or
   /// on this side of the lens), is cut per fragment by its depth, unless the rays converge in front of it.
-  /// `offset_px`: place of the samples within a texel.
+  /// `offset_px`: place of the samples within a texel; `nested`: may be null.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface,
-            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry);
+            const optics::VirtualView& view, glm::dvec2 offset_px, bool geometry,
+            const NestedOptics* nested = nullptr);
 
   /// The view of the last draw(), with its depth of the optic (null where nothing is cut) for what is drawn
   /// on top.

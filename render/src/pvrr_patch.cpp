@@ -74,13 +74,14 @@ std::vector<VertexHit> rays_in_map(const LensRays& rays) {
 }  // namespace
 
 PvrrPatch::PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
-                     const cad_import::BoundingBox& bounds)
+                     const cad_import::BoundingBox& bounds, const PatchPlace& place)
     : scene_(scene),
       optic_(scene.optics[optic]),
       index_(optic),
       raster_(raster),
       rays_(rays),
-      bounds_(bounds) {}
+      bounds_(bounds),
+      place_(place) {}
 
 void PvrrPatch::optic_changed() {
   refinement_.forget();
@@ -89,6 +90,7 @@ void PvrrPatch::optic_changed() {
   refined_from_.reset();
   tracer_.reset();
   traced_from_.reset();
+  own_surface_.reset();
 }
 
 void PvrrPatch::set_bounds(const cad_import::BoundingBox& bounds) {
@@ -101,10 +103,11 @@ void PvrrPatch::place(const optics::Placement& placement) {
   if (placement == placement_) return;
   placement_ = placement;
   if (refined_surface_) refined_surface_->place(placement);
+  if (own_surface_) own_surface_->place(placement);
   hits_hold_ = false;
 }
 
-void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
+void PvrrPatch::update(const RasterView& camera, const FrameOptions& options, double texels_before) {
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
@@ -113,8 +116,10 @@ void PvrrPatch::update(const RasterView& camera, const FrameOptions& options) {
     drawn_.reset();
     return;
   }
-  const bool stays = hits_hold_;
+  bool stays = hits_hold_;
   if (!stays) find_hits();
+  stays = stays && texels_before == texels_before_;
+  texels_before_ = texels_before;
   if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays, options.reuse_static);
   map_.resize(map_size_, options.geometry);
 }
@@ -158,13 +163,18 @@ void PvrrPatch::find_hits() {
 }
 
 std::vector<VertexHit> PvrrPatch::with_hits(std::vector<VertexHit> rays) const {
-  if (placement_ == optics::Placement()) return optics::find_scene_hits(std::move(rays), rays_);
+  const auto find = [&](std::vector<VertexHit> in_world) {
+    in_world = optics::find_scene_hits(std::move(in_world), rays_);
+    if (place_.bodies) place_.bodies->add_hits(in_world, index_, place_.shows_lenses);
+    return in_world;
+  };
+  if (placement_ == optics::Placement()) return find(std::move(rays));
   std::vector<VertexHit> in_world = rays;
   for (VertexHit& ray : in_world) {
     ray.surface_point_mm = placement_.point(ray.surface_point_mm);
     ray.direction = placement_.direction(ray.direction);
   }
-  in_world = optics::find_scene_hits(std::move(in_world), rays_);
+  in_world = find(std::move(in_world));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i].scene_hit = in_world[i].scene_hit;
     rays[i].hit_point_mm = placement_.own_point(in_world[i].hit_point_mm);
@@ -195,15 +205,17 @@ void PvrrPatch::fit(const RasterView& camera, bool hits_anew, bool remember) {
     }
   }
   if (plane) {
-    set_map_size({plane->texels, 1.0});
+    set_map_size({plane->texels, texels_before_});
     return;
   }
   std::vector<glm::dvec3> pixels;
   pixels.reserve(coordinates_.size());
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     pixels.push_back(hits()[i].faces_eye ? camera.pixel(seen_mesh().vertices[i].position_mm) : glm::dvec3(0));
-  set_map_size(choose_map_size(seen_mesh(), pixels, coordinates_, view_, camera.size,
-                               scene_.settings.texels_per_pixel));
+  PvrrMapSize size = choose_map_size(seen_mesh(), pixels, coordinates_, view_, camera.size,
+                                     scene_.settings.texels_per_pixel / texels_before_);
+  size.texels_per_pixel *= texels_before_;
+  set_map_size(size);
 }
 
 void PvrrPatch::set_map_size(const PvrrMapSize& size) {
@@ -220,8 +232,11 @@ void PvrrPatch::set_coordinates() {
 
 void PvrrPatch::show() {
   if (optic_.kind == OpticKind::mirror) {
-    RasterOptic& surface = refined_surface_ ? *refined_surface_ : raster_.optic(index_);
-    surface.set_map_coordinates(coordinates_);
+    if (place_.nested && !own_surface_) {
+      own_surface_ = std::make_unique<RasterOptic>(optic_.mesh, false);
+      own_surface_->place(placement_);
+    }
+    mirror_surface().set_map_coordinates(coordinates_);
     return;
   }
   lens_.set_shown(seen_surface(), raster_.exit_mask(index_, optics::other_side(lens_rays_.entered)),
@@ -236,19 +251,20 @@ std::vector<std::vector<glm::dvec3>> PvrrPatch::lens_coordinates() const {
   return of_samples;
 }
 
-void PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  if (!faces_eye_) return;
+bool PvrrPatch::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay, const NestedOptics* nested) {
+  if (!faces_eye_) return false;
   const glm::dvec2 offset = map_offset(offset_px);
-  if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return;
+  if (!overlay && drawn_ && drawn_->offset_px == offset && drawn_->geometry == geometry) return false;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
-  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry);
+  map_.draw(raster_, index_, last, placed(view_, placement_), offset, geometry, nested);
   drawn_ = {offset, geometry};
-  if (!overlay) return;
+  if (!overlay) return true;
   map_.target().bind(false);
   overlay->draw_in_scene(map_.view(), map_.clip_depth());
   drawn_.reset();
+  return true;
 }
 
 void PvrrPatch::set_map(glm::dvec2 offset_px, bool geometry) const {
@@ -272,8 +288,17 @@ const LensRays& PvrrPatch::shown_rays() const {
 }
 
 const RasterOptic& PvrrPatch::seen_surface() const {
+  if (optic_.kind == OpticKind::mirror) return mirror_surface();
+  return refined_surface_ ? *refined_surface_ : raster_.side(index_, lens_rays_.entered);
+}
+
+RasterOptic& PvrrPatch::mirror_surface() const {
   if (refined_surface_) return *refined_surface_;
-  return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_rays_.entered);
+  return own_surface_ ? *own_surface_ : raster_.optic(index_);
+}
+
+RasterView PvrrPatch::map_camera() const {
+  return map_view(placed(view_, placement_), map_.size().texels);
 }
 
 const tessellate::OpticArrays& PvrrPatch::seen_mesh() const {

@@ -13,6 +13,7 @@
 #include "optics/virtual_view.h"
 #include "render/frame.h"
 #include "render/src/lens_rays.h"
+#include "render/src/optic_bodies.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/pvrr_map.h"
 #include "render/src/pvrr_refinement.h"
@@ -21,11 +22,18 @@
 
 namespace catoptra::render {
 
+/// Where a patch stands in the tree of maps (pvrr_stack.h).
+struct PatchPlace {
+  const OpticBodies* bodies = nullptr;  ///< what rays meet of the other optics; null where there are none
+  bool shows_lenses = false;            ///< the map shows the other lenses, which rays then meet
+  bool nested = false;                  ///< the optic is seen in another one's map
+};
+
 class PvrrPatch {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
   PvrrPatch(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
-            const cad_import::BoundingBox& bounds);
+            const cad_import::BoundingBox& bounds, const PatchPlace& place = {});
 
   /// The optic itself has changed; or something else that its map shows; or the bounds of everything.
   void optic_changed();
@@ -33,15 +41,23 @@ class PvrrPatch {
   void set_bounds(const cad_import::BoundingBox& bounds);
   /// The optic is somewhere else. Its rays stay if the eye comes along.
   void place(const optics::Placement& placement);
+  /// Other optics have changed or moved, and rays may meet them.
+  void others_changed() { hits_hold_ = false; }
 
   /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices where
   /// the eye has another place as the optic sees it; their hits where either has another place in the world,
   /// and with them viewpoint, map coordinates, and the size of the map. `camera`: in the world, without
-  /// sample offset.
-  void update(const RasterView& camera, const FrameOptions& options);
+  /// sample offset. `texels_before`: texels per pixel of the map that the camera is of, 1 for the picture.
+  void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1);
 
-  /// Pass 1, unless the map is there already. An `overlay` (or null) is drawn into it.
-  void draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  /// Pass 1, unless the map is there already; returns whether it was drawn. An `overlay` (or null) is drawn
+  /// into it, and before that the optics that it shows by their own maps.
+  bool draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay, const NestedOptics* nested = nullptr);
+
+  /// The map's view in the world (after update()), without sample offset; and the offset of its samples
+  /// within its texels.
+  [[nodiscard]] RasterView map_camera() const;
+  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
 
   /// For the program in use: the map of pass 2, with the map rays that geometry needs.
   void set_map(glm::dvec2 offset_px, bool geometry) const;
@@ -75,7 +91,7 @@ class PvrrPatch {
   void set_map_size(const PvrrMapSize& size);
   [[nodiscard]] const tessellate::OpticArrays& seen_mesh() const;
   [[nodiscard]] const LensRays& shown_rays() const;
-  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
+  [[nodiscard]] RasterOptic& mirror_surface() const;
 
   const Scene& scene_;
   const optics::Optic& optic_;
@@ -83,6 +99,8 @@ class PvrrPatch {
   RasterScene& raster_;
   const optics::RayScene& rays_;
   cad_import::BoundingBox bounds_;
+  PatchPlace place_;
+  std::unique_ptr<RasterOptic> own_surface_;  ///< of a nested mirror, with its own map coordinates
 
   optics::Placement placement_;
 
@@ -106,6 +124,7 @@ class PvrrPatch {
   LensRays refined_paths_, refined_rays_;         ///< without and with what they meet
 
   std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
+  double texels_before_ = 1;
   optics::VirtualView view_;
   bool on_pixel_grid_ = false;  ///< the view is that of plane_view()
   std::vector<glm::dvec3>

@@ -293,6 +293,7 @@ void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
+    if (std::find(pass.nested.begin(), pass.nested.end(), i) != pass.nested.end()) continue;
     set_mesh_origin(view, optics_[i]);
     set_vec3(kAlbedo, scene_.optics[i].reflectance);
     set_vec3(kEmissive, glm::vec3(0));

@@ -30,6 +30,7 @@ struct RasterPass {
   double clip_reach_mm = 0;               ///< that depth is nowhere beyond this distance along the view
   bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
   std::optional<std::size_t> except;      ///< ... but not this one
+  std::span<const std::size_t> nested{};  ///< ... nor these, which show their own maps
 };
 
 /// Everything static is uploaded once, positions in the meshes' own coordinates. Needs a current context
