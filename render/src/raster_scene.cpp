@@ -220,6 +220,7 @@ void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
 
 void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
   begin_view(view, pass.level_bias);
+  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   const glm::vec4 background(scene_.environment.color, 1);
   glClearBufferfv(GL_COLOR, 0, &background.x);
   const float farthest = 0;
@@ -227,7 +228,6 @@ void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
 }
 
 void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
-  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   draw_surroundings(view, pass);
   if (pass.draw_optics) draw_optics(view, pass);
   // A sky of one colour without geometry is the cleared background itself.
