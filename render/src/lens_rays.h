@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "optics/lens_path.h"
@@ -45,6 +46,10 @@ struct LensRays {
 /// The same from a given side.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm, optics::LensSide entered);
+/// The same of light that comes to the vertices of that side by other optics, about as if from `eye_mm`.
+[[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
+                                        const glm::dvec3& eye_mm, optics::LensSide entered,
+                                        std::span<const optics::Arrival> arrivals);
 
 /// Closes vertices whose ray, continued beyond the border, has no place in the map.
 void close_off_map(std::vector<optics::VertexHit>& hits, const optics::VirtualView& view);

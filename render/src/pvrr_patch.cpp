@@ -1,5 +1,6 @@
 #include "render/src/pvrr_patch.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -25,6 +26,8 @@ constexpr double kLensMargin = 0.02;
 // of a common motion of eye and optic by rounding, in scenes up to 100 km. Rays then are off by 1e-8 rad, a
 // sixth of the step of the floats in which map coordinates are drawn.
 constexpr double kEyeRounding = 1e-8;
+
+constexpr std::size_t kVerticesPerTask = 64;
 
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
 constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9;
@@ -107,7 +110,9 @@ void PvrrPatch::place(const optics::Placement& placement) {
   hits_hold_ = false;
 }
 
-void PvrrPatch::update(const RasterView& camera, const FrameOptions& options, double texels_before) {
+void PvrrPatch::update(const RasterView& camera, const FrameOptions& options, double texels_before,
+                       const PvrrPatch* above) {
+  above_ = above;
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   const RasterView view = in_own_frame(camera, placement_);
   if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
@@ -125,24 +130,67 @@ void PvrrPatch::update(const RasterView& camera, const FrameOptions& options, do
 }
 
 bool PvrrPatch::rays_hold(const glm::dvec3& eye_mm) const {
+  if (above_ && above_->traces_ != traced_above_) return false;
   return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
                              kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
 void PvrrPatch::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
+  if (above_) traced_above_ = above_->traces_;
+  ++traces_;
   hits_hold_ = false;
+  light_.reset();
+  const auto arrival = [this](const glm::dvec3& point) { return arrival_at(point); };
   if (optic_.kind == OpticKind::mirror) {
-    mirror_rays_ = optics::reflect_vertices(optic_, eye_mm);
+    const std::vector<optics::Arrival> arriving = arrivals(optic_.mesh);
+    mirror_rays_.clear();
+    for (std::size_t i = 0; i < arriving.size(); ++i)
+      mirror_rays_.push_back(optics::reflect_vertex(optic_.mesh.vertices[i], optic_, arriving[i]));
     ray_count_ = static_cast<std::size_t>(std::count_if(mirror_rays_.begin(), mirror_rays_.end(),
                                                         [](const VertexHit& h) { return h.faces_eye; }));
+    light_.emplace(optic_, optics::LensSide::front, nullptr, optics::LensIndices(), mirror_rays_, arrival);
   } else {
     if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
-    lens_paths_ = refract_eye_rays(optic_, *tracer_, eye_mm);
+    const optics::LensSide entered = optics::side_towards(optic_, eye_mm);
+    lens_paths_ =
+        refract_eye_rays(optic_, *tracer_, eye_mm, entered, arrivals(*optics::side_of(optic_, entered).mesh));
     ray_count_ = lens_paths_.passed();
+    light_.emplace(optic_, entered, tracer_.get(),
+                   optics::lens_indices(optic_, lens_paths_.samples[0].wavelength_nm), lens_paths_.hits[0],
+                   arrival);
   }
   traced_rays_ = ray_count_;
   faces_eye_ = ray_count_ > 0;
+}
+
+optics::Arrival PvrrPatch::arrival_at(const glm::dvec3& own_point_mm) const {
+  if (above_)
+    if (const auto light = above_->light_to(placement_.point(own_point_mm))) {
+      const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
+      return {placement_.own_point(light->origin_mm), placement_.own_direction(light->direction),
+              to_own * light->turn * to_world};
+    }
+  return optics::arrival_from_eye(*traced_from_, own_point_mm);
+}
+
+std::vector<optics::Arrival> PvrrPatch::arrivals(const tessellate::OpticArrays& mesh) const {
+  std::vector<optics::Arrival> arrivals(mesh.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, arrivals.size(), kVerticesPerTask),
+                    [&](const auto& some) {
+                      for (std::size_t i = some.begin(); i < some.end(); ++i)
+                        arrivals[i] = arrival_at(mesh.vertices[i].position_mm);
+                    });
+  return arrivals;
+}
+
+std::optional<optics::Arrival> PvrrPatch::light_to(const glm::dvec3& point_mm) const {
+  if (!light_) return std::nullopt;
+  auto light = light_->to(placement_.own_point(point_mm));
+  if (!light) return std::nullopt;
+  const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
+  return optics::Arrival{placement_.point(light->origin_mm), placement_.direction(light->direction),
+                         to_world * light->turn * to_own};
 }
 
 void PvrrPatch::find_hits() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "optics/lens_path.h"
+#include "optics/passed_light.h"
 #include "optics/vertex_hits.h"
 #include "optics/virtual_view.h"
 #include "render/frame.h"
@@ -48,7 +49,14 @@ class PvrrPatch {
   /// the eye has another place as the optic sees it; their hits where either has another place in the world,
   /// and with them viewpoint, map coordinates, and the size of the map. `camera`: in the world, without
   /// sample offset. `texels_before`: texels per pixel of the map that the camera is of, 1 for the picture.
-  void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1);
+  /// `above`: the optic in whose map the camera sees this one, by way of which light comes here; null: none.
+  /// It must outlive this, and its own update() must have been called.
+  void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1,
+              const PvrrPatch* above = nullptr);
+
+  /// How light comes from the eye through this optic to a point beyond it, both in the world; nullopt where
+  /// it does not.
+  [[nodiscard]] std::optional<optics::Arrival> light_to(const glm::dvec3& point_mm) const;
 
   /// Pass 1, unless the map is there already; returns whether it was drawn. An `overlay` (or null) is drawn
   /// into it, and before that the optics that it shows by their own maps.
@@ -79,6 +87,8 @@ class PvrrPatch {
 
  private:
   [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;
+  [[nodiscard]] optics::Arrival arrival_at(const glm::dvec3& own_point_mm) const;
+  [[nodiscard]] std::vector<optics::Arrival> arrivals(const tessellate::OpticArrays& mesh) const;
   void trace(const glm::dvec3& eye_mm);
   void find_hits();
   [[nodiscard]] std::vector<optics::VertexHit> with_hits(std::vector<optics::VertexHit> rays) const;
@@ -105,6 +115,10 @@ class PvrrPatch {
   optics::Placement placement_;
 
   std::optional<glm::dvec3> traced_from_;  ///< the eye, in the optic's frame, that what follows belongs to
+  const PvrrPatch* above_ = nullptr;
+  std::size_t traced_above_ = 0;  ///< how often the rays of the optic above had been traced
+  std::size_t traces_ = 0;
+  std::optional<optics::PassedLight> light_;
   std::vector<optics::VertexHit> mirror_rays_;
   std::unique_ptr<optics::LensTracer> tracer_;
   LensRays lens_paths_;

@@ -28,6 +28,7 @@ struct RefinementRequest {
   std::span<const glm::dvec3> coordinates;             ///< homogeneous map coordinates
   const optics::VirtualView& view;
   glm::dvec3 eye_mm{0};  ///< where the rays were traced from: the camera's place but for rounding
+  std::function<optics::Arrival(const glm::dvec3& point_mm)> arrival;  ///< how light comes from there
   const RasterView& camera;
   double max_error_px = 0.5;
   bool remember =

@@ -136,7 +136,7 @@ void PvrrStack::update_children(Node& node, const FrameOptions& options, std::ve
       const auto known = std::find_if(former.begin(), former.end(),
                                       [&](const auto& child) { return child && child->optic == optic; });
       auto child = known != former.end() ? std::move(*known) : make_node(optic, node.level + 1);
-      child->patch.update(with_eye(map), options, node.patch.map().size().texels_per_pixel);
+      child->patch.update(with_eye(map), options, node.patch.map().size().texels_per_pixel, &node.patch);
       next.push_back(child.get());
       children.push_back(std::move(child));
     }
