@@ -18,12 +18,26 @@ struct Frame {
   // Geometry of the pixel's centre (sample 0), filled only where asked for, and only where an optic shows
   // (optic_id >= 0), except `position`, which is there for every pixel.
   std::vector<glm::vec4> position;     ///< xyz, w = 1: world point shown, mm; w = 0: a direction (the sky)
-  std::vector<glm::vec3> surface;      ///< last point on the optic, mm
+  std::vector<glm::vec3> surface;      ///< last point on the last optic, mm
   std::vector<glm::vec3> direction;    ///< unit outgoing direction of the exact ray where the mode knows it
-  std::vector<std::int32_t> optic_id;  ///< index in Scene::optics; -1: no optic
+  std::vector<std::int32_t> optic_id;  ///< index in Scene::optics of the first optic seen; -1: no optic
+  std::vector<std::uint8_t> bounces;   ///< optics along the path; empty: 1 wherever an optic shows
+  std::vector<std::uint32_t> path;     ///< which ones, in order: see path_after(); empty: optic_id alone
 
   std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where the pixel was found wrong and traced
 };
+
+/// The number of a path that goes on by optic `optic` after the path numbered `path`; 0 is a path without
+/// optics. Two paths with the same number meet the same optics in the same order. Source: FNV-1a.
+[[nodiscard]] constexpr std::uint32_t path_after(std::uint32_t path, std::int32_t optic) {
+  return (path ^ static_cast<std::uint32_t>(optic + 1)) * 16777619u;
+}
+
+/// Number of the path of pixel `i`, for frames without `path` too.
+[[nodiscard]] inline std::uint32_t path_of(const Frame& frame, std::size_t i) {
+  if (!frame.path.empty()) return frame.path[i];
+  return frame.optic_id[i] < 0 ? 0u : path_after(0, frame.optic_id[i]);
+}
 
 struct PatchStats {
   glm::dvec3 viewpoint_mm{0};

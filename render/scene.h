@@ -41,7 +41,7 @@ struct RenderSettings {
   std::string mode = "pvrr";
   double max_error_px = 0;  ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
   double patch_fov_rad = 1.047;
-  int depth = 3;
+  int depth = 3;  ///< greatest number of optics along a path, at least 1
   double chord_mm = 0.01;
   double angle_rad = 0.0873;
   double texels_per_pixel = 1.5;

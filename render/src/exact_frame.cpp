@@ -67,6 +67,8 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
       frame.surface = std::move(v.geometry.surface);
       frame.direction = std::move(v.geometry.direction);
       frame.optic_id = std::move(v.geometry.optic_id);
+      frame.bounces = std::move(v.geometry.bounces);
+      frame.path = std::move(v.geometry.path);
       v.rays += tracer.trace_pixels(camera, options, marked_pixels(v.wrong), frame);
     });
   });

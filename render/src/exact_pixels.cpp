@@ -41,11 +41,14 @@ void ExactPixels::reset(int width, int height) {
   frame.direction.resize(count);
   normal.resize(count);
   frame.optic_id.assign(count, -1);
+  frame.bounces.assign(count, 0);
+  frame.path.assign(count, 0);
 }
 
 bool agrees(const ExactPixels& exact, const Frame& shown, std::size_t i) {
   if (exact.frame.optic_id[i] != shown.optic_id[i]) return false;
   if (exact.frame.optic_id[i] < 0) return true;
+  if (path_of(exact.frame, i) != path_of(shown, i)) return false;
   if (both_touch(exact.frame, shown, i)) return true;
   const auto direction = shown_direction(exact.frame, shown, i);
   if (!direction) return false;

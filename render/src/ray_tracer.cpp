@@ -87,6 +87,20 @@ void allocate(Frame& frame, const FrameOptions& options) {
   frame.surface.resize(count);
   frame.direction.resize(count);
   frame.optic_id.resize(count);
+  frame.bounces.resize(count);
+  frame.path.resize(count);
+}
+
+/// The layers that other modes may lack, which know of one optic along a path.
+void add_paths(Frame& frame) {
+  if (!frame.path.empty()) return;
+  frame.bounces.resize(frame.optic_id.size());
+  frame.path.resize(frame.optic_id.size());
+  for (std::size_t i = 0; i < frame.optic_id.size(); ++i) {
+    if (frame.optic_id[i] < 0) continue;
+    frame.bounces[i] = 1;
+    frame.path[i] = path_after(0, frame.optic_id[i]);
+  }
 }
 
 }  // namespace
@@ -138,6 +152,7 @@ RenderResult RayTracer::render(const Camera& camera, const FrameOptions& options
 
 std::size_t RayTracer::trace_pixels(const Camera& camera, const FrameOptions& options,
                                     std::span<const std::uint32_t> pixels, Frame& frame) const {
+  if (options.geometry) add_paths(frame);
   const PacketView view = impl_->packets.view(camera_rays(camera, options.width, options.height));
   return for_packets(options, pixels, [&](const PixelPacket& packet) {
     return impl_->packets.trace(view, options, packet, frame);

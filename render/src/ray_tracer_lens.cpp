@@ -11,32 +11,12 @@
 #include "optics/exact_hit.h"
 #include "optics/vertex_hits.h"
 #include "render/src/lens_rays.h"
+#include "render/src/ray_tracer_chain_query.h"
 
 namespace catoptra::render {
 namespace {
 
 constexpr int kLanes = LensLanes::kLanes;
-
-tessellate::OpticVertex vertex_at(const optics::LensSideView& side, const optics::ExactHit& hit) {
-  const auto curvature = side.faces[std::size_t(hit.face)].surface->principal_curvatures(hit.uv.x, hit.uv.y);
-  return {hit.position_mm, hit.normal, curvature.k1, curvature.k2, curvature.direction1, hit.face, hit.uv};
-}
-
-/// The point of the side's exact surface that belongs to a hit on its mesh.
-tessellate::OpticVertex exact_entry(const optics::LensSideView& side, const optics::Ray& ray,
-                                    const optics::Hit& mesh_hit) {
-  if (const auto hit = optics::exact_hit(side.faces, *side.mesh, ray, mesh_hit)) return vertex_at(side, *hit);
-  // The mesh reaches past the trimmed face by less than its chord error: here the mesh itself is the lens.
-  const tessellate::OpticTriangle& triangle = side.mesh->triangles[mesh_hit.triangle];
-  const auto corner = [&](std::size_t k) -> const tessellate::OpticVertex& {
-    return side.mesh->vertices[triangle.vertices[k]];
-  };
-  const double u = mesh_hit.barycentric.x, v = mesh_hit.barycentric.y, w = 1 - u - v;
-  tessellate::OpticVertex entry = corner(w >= u && w >= v ? 0 : u >= v ? 1 : 2);
-  entry.position_mm = w * corner(0).position_mm + u * corner(1).position_mm + v * corner(2).position_mm;
-  entry.normal = glm::normalize(w * corner(0).normal + u * corner(1).normal + v * corner(2).normal);
-  return entry;
-}
 
 void set_ray(optics::RayPacket16& packet, int i, const glm::dvec3& origin, const glm::dvec3& direction,
              float t_max) {
@@ -50,6 +30,28 @@ void set_ray(optics::RayPacket16& packet, int i, const glm::dvec3& origin, const
   packet.t_max[i] = t_max;
 }
 
+/// Whether any of the lanes `asked` may meet the box before its t_max; lanes that cannot are taken out. Slabs.
+bool reaches(const optics::RayPacket16& rays, const cad_import::BoundingBox& box, bool (&asked)[kLanes]) {
+  constexpr float kMargin_mm = 0.1f;
+  const glm::vec3 low = glm::vec3(box.min) - kMargin_mm, high = glm::vec3(box.max) + kMargin_mm;
+  bool any = false;
+  for (int i = 0; i < kLanes; ++i) {
+    float first = rays.t_min[i], last = rays.t_max[i];
+    const auto slab = [&](float origin, float direction, float a, float b) {
+      const float inverse = 1 / (direction == 0 ? 1e-30f : direction);
+      const float t0 = (a - origin) * inverse, t1 = (b - origin) * inverse;
+      first = std::max(first, std::min(t0, t1));
+      last = std::min(last, std::max(t0, t1));
+    };
+    slab(rays.origin_x[i], rays.direction_x[i], low.x, high.x);
+    slab(rays.origin_y[i], rays.direction_y[i], low.y, high.y);
+    slab(rays.origin_z[i], rays.direction_z[i], low.z, high.z);
+    asked[i] = asked[i] && first <= last;
+    any |= asked[i];
+  }
+  return any;
+}
+
 }  // namespace
 
 TracedLenses::Lens::Lens(std::size_t index, const optics::Optic& lens)
@@ -60,6 +62,13 @@ TracedLenses::Lens::Lens(std::size_t index, const optics::Optic& lens)
   back.commit();
   for (const optics::SpectralSample& sample : samples)
     indices.push_back(optics::lens_indices(lens, sample.wavelength_nm));
+  for (const auto* mesh : {&lens.mesh, &lens.back.mesh})
+    for (const auto& vertex : mesh->vertices) {
+      box.min = glm::min(box.min, vertex.position_mm);
+      box.max = glm::max(box.max, vertex.position_mm);
+    }
+  own_sine[0] = own_sight_sine(lens.mesh, 1);
+  own_sine[1] = own_sight_sine(lens.back.mesh, 1);
 }
 
 void TracedLenses::Lens::fit_patches(const optics::Optic& lens) {
@@ -86,12 +95,51 @@ TracedLenses::TracedLenses(const Scene& scene) : scene_(scene), by_optic_(scene.
     lenses_.push_back(std::make_unique<Lens>(i, scene.optics[i]));
     by_optic_[i] = lenses_.back().get();
   }
+  number_wavelengths();
+}
+
+void TracedLenses::number_wavelengths() {
+  wavelengths_nm_.clear();
+  for (const auto& lens : lenses_) {
+    lens->wavelengths.clear();
+    for (const optics::SpectralSample& sample : lens->samples) {
+      const auto found = std::ranges::find(wavelengths_nm_, sample.wavelength_nm);
+      lens->wavelengths.push_back(int(found - wavelengths_nm_.begin()));
+      if (found == wavelengths_nm_.end()) wavelengths_nm_.push_back(sample.wavelength_nm);
+    }
+  }
+  for (const auto& lens : lenses_) {
+    lens->indices_at.clear();
+    for (const double nm : wavelengths_nm_)
+      lens->indices_at.push_back(optics::lens_indices(scene_.optics[lens->optic], nm));
+  }
+}
+
+int TracedLenses::wavelength(std::size_t index, std::size_t sample) const {
+  const Lens& lens = *by_optic_[index];
+  return lens.samples.size() > 1 ? lens.wavelengths[sample] : -1;
+}
+
+glm::mat3 TracedLenses::weight(std::size_t index, std::size_t sample) const {
+  return glm::mat3(by_optic_[index]->samples[sample].weight);
+}
+
+const optics::LensIndices* TracedLenses::indices(std::size_t index, std::size_t sample) const {
+  const Lens& lens = *by_optic_[index];
+  return sample < lens.indices.size() ? &lens.indices[sample] : nullptr;
+}
+
+const optics::LensIndices* TracedLenses::indices_at(std::size_t index, int wavelength) const {
+  const Lens& lens = *by_optic_[index];
+  return lens.samples.size() > 1 && wavelength >= 0 ? &lens.indices_at[std::size_t(wavelength)]
+                                                    : &lens.indices[0];
 }
 
 void TracedLenses::optic_changed(std::size_t index) {
   for (auto& lens : lenses_)
     if (lens->optic == index)
       by_optic_[index] = (lens = std::make_unique<Lens>(index, scene_.optics[index])).get();
+  number_wavelengths();
 }
 
 std::vector<optics::LensSide> TracedLenses::entered_from(const glm::dvec3& eye_mm) const {
@@ -129,30 +177,30 @@ void TracedLenses::find(const std::vector<optics::LensSide>& entered, optics::Ra
 void TracedLenses::enter(const CameraRays& camera, const double (&column)[kLanes],
                          const double (&row)[kLanes], LensLanes& lanes) const {
   if (!lanes.any) return;
-  double stretch[kLanes];
-  aim_beams(camera, column, row, stretch, lanes.eye);
+  double distance[kLanes];
+  aim_beams(camera, column, row, distance, lanes.eye);
+  for (int i = 0; i < kLanes; ++i)
+    if (lanes.optic[i] >= 0) distance[i] *= double(lanes.depth[i]);
+  meet_entries(distance, lanes);
+}
+
+void TracedLenses::meet_entries(const double (&distance)[kLanes], LensLanes& lanes) const {
   lanes.entry = {};
   for (const auto& lens : lenses_) {
-    LensSidePatches::MeshHits hits{};
-    const int* some = std::find(lanes.optic, lanes.optic + kLanes, int(lens->optic));
-    if (some == lanes.optic + kLanes) continue;
-    const optics::LensSide entered = lanes.entered[some - lanes.optic];
-    for (int i = 0; i < kLanes; ++i) {
-      hits.active[i] = lanes.optic[i] == int(lens->optic);
-      if (!hits.active[i]) continue;
-      hits.distance[i] = double(lanes.depth[i]) * stretch[i];
-      hits.triangle[i] = lanes.triangle[i];
-      hits.u[i] = lanes.u[i];
-      hits.v[i] = lanes.v[i];
-    }
-    bool solved[kLanes];
-    lens->patches(entered).meet(lanes.eye, hits, lanes.entry, solved);
-    const optics::LensSideView side = optics::side_of(scene_.optics[lens->optic], entered);
-    for (int i = 0; i < kLanes; ++i) {
-      if (!hits.active[i] || (solved[i] && lanes.entry.distance[i] > 0)) continue;
-      const optics::Hit hit{hits.distance[i], 0, hits.triangle[i], {double(hits.u[i]), double(hits.v[i])}};
-      meet_vertex(exact_entry(side, {camera.eye_mm, lanes.eye.direction.at(i)}, hit), lanes.eye, i,
-                  lanes.entry);
+    if (std::ranges::find(lanes.optic, int(lens->optic)) == std::end(lanes.optic)) continue;
+    for (const optics::LensSide side : {optics::LensSide::front, optics::LensSide::back}) {
+      LensSidePatches::MeshHits hits{};
+      bool any = false;
+      for (int i = 0; i < kLanes; ++i) {
+        hits.active[i] = lanes.optic[i] == int(lens->optic) && lanes.entered[i] == side;
+        if (!hits.active[i]) continue;
+        any = true;
+        hits.distance[i] = distance[i];
+        hits.triangle[i] = lanes.triangle[i];
+        hits.u[i] = lanes.u[i];
+        hits.v[i] = lanes.v[i];
+      }
+      if (any) lens->patches(side).meet_all(lanes.eye, hits, lanes.entry);
     }
   }
 }
@@ -167,16 +215,19 @@ std::size_t TracedLenses::sample_count(const LensLanes& lanes) const {
 
 // Exits are looked for as LensTracer does: from a little before the entry on, and what is not met clearly is
 // its affair.
-void TracedLenses::meet_exits(const Lens& lens, const LensLanes& lanes, std::size_t sample,
-                              const RefractedBeams& inside, MetLanes& exit, bool (&met)[kLanes]) const {
+void TracedLenses::meet_exits(const Lens& lens, optics::LensSide entered, const LensLanes& lanes,
+                              const IndexLanes& indices, const RefractedBeams& inside, MetLanes& exit,
+                              bool (&met)[kLanes]) const {
   constexpr double kBeforeEntry_mm = 0.05;
-  const int* some = std::find(lanes.optic, lanes.optic + kLanes, int(lens.optic));
-  if (some == lanes.optic + kLanes || sample >= lens.samples.size()) return;
-  const optics::LensSide entered = lanes.entered[some - lanes.optic], left = optics::other_side(entered);
+  bool here[kLanes], any = false;
+  for (int i = 0; i < kLanes; ++i)
+    any |= here[i] = lanes.optic[i] == int(lens.optic) && lanes.entered[i] == entered && indices[i];
+  if (!any) return;
+  const optics::LensSide left = optics::other_side(entered);
   optics::RayPacket16 query;
   bool active[kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    active[i] = lanes.optic[i] == int(lens.optic) && inside.possible[i] &&
+    active[i] = here[i] && inside.possible[i] &&
                 glm::dot(lanes.eye.direction.at(i), lanes.entry.normal.at(i)) < 0;
     set_ray(query, i, {0, 0, 0}, {1, 0, 0}, -1);
     if (!active[i]) continue;
@@ -206,28 +257,33 @@ void TracedLenses::meet_exits(const Lens& lens, const LensLanes& lanes, std::siz
     entry.position_mm = lanes.entry.point.at(i);
     entry.normal = lanes.entry.normal.at(i);
     const optics::LensPath path = lens.tracer.trace_from({lanes.eye.point.at(i), lanes.eye.direction.at(i)},
-                                                         entry, entered, lens.indices[sample]);
+                                                         entry, entered, *indices[i]);
     met[i] = path.end == optics::LensPathEnd::passed;
-    if (met[i]) meet_vertex(vertex_at(side, path.exit), inside.beams, i, exit);
+    if (met[i]) meet_vertex(exact_side_point(side, path.exit), inside.beams, i, exit);
   }
 }
 
 void TracedLenses::refract(const LensLanes& lanes, std::size_t sample, RefractedLanes& out) const {
+  IndexLanes by_lane = {};
+  for (int i = 0; i < kLanes; ++i)
+    if (lanes.optic[i] >= 0) by_lane[i] = indices(std::size_t(lanes.optic[i]), sample);
+  refract(lanes, by_lane, out);
+}
+
+void TracedLenses::refract(const LensLanes& lanes, const IndexLanes& indices, RefractedLanes& out) const {
   double inwards[kLanes], outwards[kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    inwards[i] = outwards[i] = 1;
-    if (lanes.optic[i] < 0) continue;
-    const Lens& lens = *by_optic_[std::size_t(lanes.optic[i])];
-    if (sample >= lens.samples.size()) continue;
-    inwards[i] = lens.indices[sample].around / lens.indices[sample].lens;
+    inwards[i] = indices[i] ? indices[i]->around / indices[i]->lens : 1;
     outwards[i] = 1 / inwards[i];
   }
   RefractedBeams inside, outside;
   refract_beams(lanes.eye, lanes.entry, inwards, inside);
-  MetLanes exit{};
+  out.exit = {};
   bool met[kLanes] = {};
-  for (const auto& lens : lenses_) meet_exits(*lens, lanes, sample, inside, exit, met);
-  refract_beams(inside.beams, exit, outwards, outside);
+  for (const auto& lens : lenses_)
+    for (const optics::LensSide entered : {optics::LensSide::front, optics::LensSide::back})
+      meet_exits(*lens, entered, lanes, indices, inside, out.exit, met);
+  refract_beams(inside.beams, out.exit, outwards, outside);
   out.beams = outside.beams;
   for (int i = 0; i < kLanes; ++i) {
     out.passed[i] = met[i] && outside.possible[i];
@@ -238,6 +294,55 @@ void TracedLenses::refract(const LensLanes& lanes, std::size_t sample, Refracted
     set_ray(out.rays, i, out.beams.point.at(i) + optics::kSelfHitDistance_mm * direction, direction,
             std::numeric_limits<float>::infinity());
   }
+}
+
+bool TracedLenses::possible_next() const {
+  const auto sees_own = [](const auto& lens) { return lens->own_sine[0] > 0 || lens->own_sine[1] > 0; };
+  return scene_.optics.size() > 1 ? !lenses_.empty() : std::ranges::any_of(lenses_, sees_own);
+}
+
+bool TracedLenses::find_next(const optics::RayPacket16& rays, const LeftOptics& left, MetOptics& met) const {
+  bool found = false;
+  for (const auto& lens : lenses_) {
+    bool others[kLanes], own[kLanes], any_own = false;
+    for (int i = 0; i < kLanes; ++i) {
+      const bool left_it = left.optic[i] == int(lens->optic);
+      others[i] = left.active[i] && !left_it;
+      any_own |= own[i] = left.active[i] && left_it && left.sees_own[i];
+    }
+    for (const optics::LensSide side : {optics::LensSide::front, optics::LensSide::back}) {
+      if (any_own) {
+        bool here[kLanes];
+        for (int i = 0; i < kLanes; ++i) here[i] = own[i] && left.side[i] == side;
+        const OwnSide own_side{lens->scene(side), 0, optics::side_of(scene_.optics[lens->optic], side), 1};
+        found |= find_own(own_side, int(lens->optic), side, rays, here, met);
+      }
+      if (reaches(rays, lens->box, others)) found |= find_side(*lens, side, rays, others, met);
+    }
+  }
+  return found;
+}
+
+bool TracedLenses::find_side(const Lens& lens, optics::LensSide side, const optics::RayPacket16& rays,
+                             const bool (&asked)[kLanes], MetOptics& met) {
+  optics::RayPacket16 query = rays;
+  for (int i = 0; i < kLanes; ++i) {
+    if (!asked[i]) query.t_max[i] = query.t_min[i] - 1;
+    if (asked[i] && met.optic[i] >= 0) query.t_max[i] = std::min(query.t_max[i], met.distance[i]);
+  }
+  lens.scene(side).intersect16(query, optics::kOptics, true);
+  bool found = false;
+  for (int i = 0; i < kLanes; ++i) {
+    if (!asked[i] || query.object[i] == optics::kNoHit) continue;
+    found = true;
+    met.optic[i] = int(lens.optic);
+    met.entered[i] = side;
+    met.distance[i] = query.t_max[i];
+    met.u[i] = query.u[i];
+    met.v[i] = query.v[i];
+    met.triangle[i] = query.triangle[i];
+  }
+  return found;
 }
 
 void TracedLenses::add_colors(std::size_t sample, const RefractedLanes& out, LensLanes& lanes) const {

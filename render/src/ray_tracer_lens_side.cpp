@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "optics/exact_hit.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -149,6 +150,24 @@ CATOPTRA_VECTOR_CLONES void refract_beams(const BeamLanes& beams, const MetLanes
   }
 }
 
+// r = d - 2 (d . n) n.
+CATOPTRA_VECTOR_CLONES void reflect_beams(const BeamLanes& beams, const MetLanes& met, BeamLanes& out) {
+  for (int i = 0; i < kLanes; ++i) {
+    const Vec d = load(beams.direction, i), n = load(met.normal, i);
+    const double twice = 2 * dot(d, n);
+    store(load(met.point, i), i, out.point);
+    store(load(met.point_right, i), i, out.point_right);
+    store(load(met.point_down, i), i, out.point_down);
+    store(d - twice * n, i, out.direction);
+    const Vec turn_right = load(beams.direction_right, i), turn_down = load(beams.direction_down, i);
+    const Vec normal_right = load(met.normal_right, i), normal_down = load(met.normal_down, i);
+    const double twice_right = 2 * (dot(turn_right, n) + dot(d, normal_right)),
+                 twice_down = 2 * (dot(turn_down, n) + dot(d, normal_down));
+    store(turn_right - twice * normal_right - twice_right * n, i, out.direction_right);
+    store(turn_down - twice * normal_down - twice_down * n, i, out.direction_down);
+  }
+}
+
 CATOPTRA_VECTOR_CLONES void set_areas(const BeamLanes& beams, const float (&way_mm)[kLanes],
                                       float (&area_mm2)[kLanes]) {
   for (int i = 0; i < kLanes; ++i) {
@@ -181,8 +200,29 @@ void meet_vertex(const tessellate::OpticVertex& vertex, const BeamLanes& beams, 
   change(beams.point_down, beams.direction_down, met.point_down, met.normal_down);
 }
 
+tessellate::OpticVertex exact_side_point(const optics::LensSideView& side, const optics::ExactHit& hit) {
+  const auto curvature = side.faces[std::size_t(hit.face)].surface->principal_curvatures(hit.uv.x, hit.uv.y);
+  return {hit.position_mm, hit.normal, curvature.k1, curvature.k2, curvature.direction1, hit.face, hit.uv};
+}
+
+tessellate::OpticVertex exact_side_point(const optics::LensSideView& side, const optics::Ray& ray,
+                                         const optics::Hit& mesh_hit) {
+  if (const auto hit = optics::exact_hit(side.faces, *side.mesh, ray, mesh_hit))
+    return exact_side_point(side, *hit);
+  const tessellate::OpticTriangle& triangle = side.mesh->triangles[mesh_hit.triangle];
+  const auto corner = [&](std::size_t k) -> const tessellate::OpticVertex& {
+    return side.mesh->vertices[triangle.vertices[k]];
+  };
+  const double u = mesh_hit.barycentric.x, v = mesh_hit.barycentric.y, w = 1 - u - v;
+  tessellate::OpticVertex point = corner(w >= u && w >= v ? 0 : u >= v ? 1 : 2);
+  point.position_mm = w * corner(0).position_mm + u * corner(1).position_mm + v * corner(2).position_mm;
+  point.normal = glm::normalize(w * corner(0).normal + u * corner(1).normal + v * corner(2).normal);
+  return point;
+}
+
 LensSidePatches::LensSidePatches(const optics::LensSideView& side)
-    : patches_(side.faces, *side.mesh), outline_corners_(side.mesh->triangles.size(), 0) {
+    : side_(side),
+      patches_(side.faces, *side.mesh), outline_corners_(side.mesh->triangles.size(), 0) {
   // An edge within a face belongs to two of its triangles. A mesh may be wider than its faces: then the
   // triangles whose corners are trimmed away are left out too.
   struct Edge {
@@ -243,6 +283,16 @@ void LensSidePatches::meet(const BeamLanes& beams, const MeshHits& hits, MetLane
     meet_patch(frame, beams, hits.distance, chosen, met, done);
   }
   for (int i = 0; i < kLanes; ++i) solved[i] = done[i] != 0;
+}
+
+void LensSidePatches::meet_all(const BeamLanes& beams, const MeshHits& hits, MetLanes& met) const {
+  bool solved[kLanes];
+  meet(beams, hits, met, solved);
+  for (int i = 0; i < kLanes; ++i) {
+    if (!hits.active[i] || (solved[i] && met.distance[i] > 0)) continue;
+    const optics::Hit hit{hits.distance[i], 0, hits.triangle[i], {double(hits.u[i]), double(hits.v[i])}};
+    meet_vertex(exact_side_point(side_, {beams.point.at(i), beams.direction.at(i)}, hit), beams, i, met);
+  }
 }
 
 }  // namespace catoptra::render

@@ -1,4 +1,4 @@
-// Rays of a packet at one side of a lens: where they meet it, and how they go on.
+// Rays of a packet at one side of a lens, or at a mirror: where they meet it, and how they go on.
 #pragma once
 
 #include <cstdint>
@@ -57,6 +57,9 @@ void aim_beams(const CameraRays& camera, const double (&column)[LaneVectors::kLa
 void refract_beams(const BeamLanes& beams, const MetLanes& met, const double (&eta)[LaneVectors::kLanes],
                    RefractedBeams& out);
 
+/// Reflection and its differentials at a mirror, for either sense of the normal. Source: Igehy 1999, 3.3.
+void reflect_beams(const BeamLanes& beams, const MetLanes& met, BeamLanes& out);
+
 /// Area across each beam, mm^2, at `way_mm` along it. Source: Igehy 1999, 3.
 void set_areas(const BeamLanes& beams, const float (&way_mm)[LaneVectors::kLanes],
                float (&area_mm2)[LaneVectors::kLanes]);
@@ -64,7 +67,14 @@ void set_areas(const BeamLanes& beams, const float (&way_mm)[LaneVectors::kLanes
 /// One lane's point of a surface, from its own evaluation: as meet() leaves it.
 void meet_vertex(const tessellate::OpticVertex& vertex, const BeamLanes& beams, int lane, MetLanes& met);
 
-/// One side of a lens as polynomial patches. Near the outline of a face they do not say whether it is met.
+/// The point of the side's exact surface that belongs to a hit on its mesh. Where the mesh reaches past the
+/// trimmed face, which is by less than its chord error, the mesh's own point.
+[[nodiscard]] tessellate::OpticVertex exact_side_point(const optics::LensSideView& side,
+                                                       const optics::Ray& ray, const optics::Hit& mesh_hit);
+[[nodiscard]] tessellate::OpticVertex exact_side_point(const optics::LensSideView& side,
+                                                       const optics::ExactHit& hit);
+
+/// One side of a lens, or a mirror, as polynomial patches. Near the outline of a face they do not say whether it is met.
 class LensSidePatches {
  public:
   /// `side` must outlive this and stay as it is.
@@ -82,9 +92,13 @@ class LensSidePatches {
   void meet(const BeamLanes& beams, const MeshHits& hits, MetLanes& met,
             bool (&solved)[LaneVectors::kLanes]) const;
 
+  /// The same for every active lane: by the exact surface itself where the patches cannot.
+  void meet_all(const BeamLanes& beams, const MeshHits& hits, MetLanes& met) const;
+
  private:
   [[nodiscard]] const SurfacePatch* patch_within(std::uint32_t triangle, double u, double v) const;
 
+  optics::LensSideView side_;
   MeshPatches patches_;
   // By triangle: bit k: corner k lies on the outline of its face; 7: all of it may.
   std::vector<std::uint8_t> outline_corners_;

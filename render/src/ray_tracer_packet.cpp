@@ -7,6 +7,8 @@
 
 #include "optics/vertex_hits.h"
 #include "render/src/lens_rays.h"
+#include "render/src/ray_tracer_chain_query.h"
+#include "render/src/ray_tracer_packet_lanes.h"
 #include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
@@ -14,44 +16,6 @@ namespace {
 
 constexpr int kLanes = PixelPacket::kLanes;
 static_assert(kLanes == ShadeLanes::kLanes && kLanes == MirrorLanes::kLanes);
-
-constexpr int kMaxOwnHits = 8;  // times a reflected ray may pass through the optic it comes from
-
-/// One lane's ray and hit.
-void copy_hit(const optics::RayPacket16& from, int i, optics::RayPacket16& to) {
-  to.origin_x[i] = from.origin_x[i];
-  to.origin_y[i] = from.origin_y[i];
-  to.origin_z[i] = from.origin_z[i];
-  to.direction_x[i] = from.direction_x[i];
-  to.direction_y[i] = from.direction_y[i];
-  to.direction_z[i] = from.direction_z[i];
-  to.t_max[i] = from.t_max[i];
-  to.normal_x[i] = from.normal_x[i];
-  to.normal_y[i] = from.normal_y[i];
-  to.normal_z[i] = from.normal_z[i];
-  to.u[i] = from.u[i];
-  to.v[i] = from.v[i];
-  to.triangle[i] = from.triangle[i];
-  to.object[i] = from.object[i];
-}
-
-void copy_hits(const optics::RayPacket16& from, ShadeLanes& to) {
-  for (int i = 0; i < kLanes; ++i) {
-    to.position_x[i] = from.origin_x[i] + from.t_max[i] * from.direction_x[i];
-    to.position_y[i] = from.origin_y[i] + from.t_max[i] * from.direction_y[i];
-    to.position_z[i] = from.origin_z[i] + from.t_max[i] * from.direction_z[i];
-  }
-  std::copy_n(from.direction_x, kLanes, to.direction_x);
-  std::copy_n(from.direction_y, kLanes, to.direction_y);
-  std::copy_n(from.direction_z, kLanes, to.direction_z);
-  std::copy_n(from.normal_x, kLanes, to.normal_x);
-  std::copy_n(from.normal_y, kLanes, to.normal_y);
-  std::copy_n(from.normal_z, kLanes, to.normal_z);
-  std::copy_n(from.u, kLanes, to.u);
-  std::copy_n(from.v, kLanes, to.v);
-  std::copy_n(from.object, kLanes, to.object);
-  std::copy_n(from.triangle, kLanes, to.triangle);
-}
 
 /// Eye rays in double precision, unit. `stretch`: how much longer they are along the camera's axis; on entry
 /// `mirror.start` is a depth, on return a distance.
@@ -69,10 +33,6 @@ CATOPTRA_VECTOR_CLONES void aim_mirror_rays(const CameraRays& camera, const doub
     mirror.direction_z[i] = z / length;
     mirror.start[i] *= length;
   }
-}
-
-std::size_t index_of(const PixelPacket& pixels, int i, const Frame& frame) {
-  return std::size_t(pixels.row[i]) * std::size_t(frame.width) + std::size_t(pixels.column[i]);
 }
 
 /// Of the triangle that lane `i` has met; anything where it has met none.
@@ -96,6 +56,8 @@ void write_lens_geometry(const PixelPacket& pixels, const LensLanes& lanes, cons
     frame.surface[at] = passed ? glm::vec3(exit) : glm::vec3(0);
     frame.direction[at] = passed ? glm::vec3(direction) : glm::vec3(0);
     frame.optic_id[at] = passed ? lanes.optic[i] : -1;
+    frame.bounces[at] = passed ? 1 : 0;
+    frame.path[at] = passed ? path_after(0, lanes.optic[i]) : 0;
   }
 }
 
@@ -114,22 +76,12 @@ SecondaryPacket secondary_packet(const optics::RayPacket16& rays, bool others) {
 
 }  // namespace
 
-/// All that is known of 16 pixels on their way.
-struct alignas(64) PacketTracer::Packet {
-  optics::RayPacket16
-      first;  ///< from the eye; directions have length 1 along the camera's axis, so t_max is a depth
-  optics::RayPacket16 second;  ///< reflected; unit directions
-  MirrorLanes mirror;
-  ShadeLanes shade;
-  double column[kLanes], row[kLanes];  ///< with the sample's offset
-  double stretch[kLanes];              ///< length of the first direction, of mirror lanes
-  int optic[kLanes];                   ///< whose reflecting side the pixel shows; -1: none
-  bool any_mirror;
-  LensLanes lens;
-};
-
 PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
-    : scene_(scene), rays_(rays), shading_(scene, textures), lenses_(scene) {
+    : scene_(scene),
+      rays_(rays),
+      shading_(scene, textures),
+      lenses_(scene),
+      chains_(scene, rays, shading_, lenses_) {
   for (const optics::Optic& optic : scene.optics) {
     const bool mirror = optic.kind == optics::OpticKind::mirror;
     mirrors_.push_back(mirror ? std::make_unique<ExactMirror>(optic) : nullptr);
@@ -141,6 +93,7 @@ void PacketTracer::optic_changed(std::size_t index) {
   shading_.optic_changed(index);
   if (mirrors_[index]) mirrors_[index] = std::make_unique<ExactMirror>(scene_.optics[index]);
   lenses_.optic_changed(index);
+  chains_.optic_changed(index);
 }
 
 /// Lanes that a lens stands before the nearest hit of keep none: refract() gives them their colour.
@@ -201,7 +154,7 @@ void PacketTracer::reflect(const CameraRays& camera, Packet& p) const {
   }
   load_reflected(p);
   if (scene_.optics.size() > 1)
-    query_skipping_own_optic(p);
+    query_past_own(rays_, static_cast<std::uint32_t>(scene_.surroundings.size()), p.optic, p.second);
   else
     rays_.intersect16(p.second, optics::kSurroundings, true);
 }
@@ -218,29 +171,6 @@ void PacketTracer::load_reflected(Packet& p) {
     p.second.direction_z[i] = active ? float(rays.reflected_z[i]) : 1;
     p.second.t_min[i] = 0;
     p.second.t_max[i] = active ? std::numeric_limits<float>::infinity() : -1.0f;
-  }
-}
-
-/// No optic shows itself, but other optics show: a hit on the own optic is passed and the query goes on
-/// behind it.
-void PacketTracer::query_skipping_own_optic(Packet& p) const {
-  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
-  optics::RayPacket16 query = p.second;
-  for (int pass = 0; pass <= kMaxOwnHits; ++pass) {
-    rays_.intersect16(query, pass < kMaxOwnHits ? optics::kEverything : optics::kSurroundings, true);
-    bool again = false;
-    for (int i = 0; i < kLanes; ++i) {
-      if (query.t_max[i] < query.t_min[i]) continue;  // done before, or never active
-      if (query.object[i] != optics::kNoHit && int(query.object[i]) == int(first_optic) + p.optic[i]) {
-        query.t_min[i] = query.t_max[i] * (1 + 1e-6f) + 1e-3f;
-        query.t_max[i] = std::numeric_limits<float>::infinity();
-        again = true;
-        continue;
-      }
-      copy_hit(query, i, p.second);
-      query.t_max[i] = query.t_min[i] - 1;
-    }
-    if (!again) return;
   }
 }
 
@@ -292,8 +222,12 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       rays += out.passed[i] ? 1 : 0;
     }
     shading_.shade(out.shade);
-    lenses_.add_colors(sample, out, p.lens);
     if (sample == 0 && geometry) write_lens_geometry(pixels, p.lens, out, *geometry);
+    if (chains_.possible()) {
+      const GeometrySink sink{sample == 0 ? geometry : nullptr, nullptr};
+      rays += follow_lenses(pixels, p, sample, {}, out, sink);
+    }
+    lenses_.add_colors(sample, out, p.lens);
   }
   return rays;
 }
@@ -313,6 +247,8 @@ std::size_t PacketTracer::trace(const PacketView& view, const FrameOptions& opti
     shading_.shade(p.shade);
     const bool geometry = sample == 0 && options.geometry;
     if (geometry) write_geometry(camera, pixels, p, frame);
+    if (p.any_mirror && chains_.possible())
+      rays += follow_mirrors(camera, pixels, p, {}, {geometry ? &frame : nullptr, nullptr});
     if (p.lens.any) rays += refract(view, pixels, p, geometry ? &frame : nullptr);
     for (int i = 0; i < kLanes; ++i) {
       const bool mirrored = p.optic[i] >= 0;
@@ -353,6 +289,8 @@ void PacketTracer::write_geometry(const CameraRays& camera, const PixelPacket& p
     frame.surface[at] = mirrored ? glm::vec3(origin) : glm::vec3(0);
     frame.direction[at] = mirrored ? glm::vec3(direction) : glm::vec3(0);
     frame.optic_id[at] = p.optic[i];
+    frame.bounces[at] = mirrored ? 1 : 0;
+    frame.path[at] = mirrored ? path_after(0, p.optic[i]) : 0;
   }
 }
 
@@ -368,7 +306,11 @@ std::size_t PacketTracer::trace_exact(const PacketView& view, glm::dvec2 offset_
     mirrored.active[i] = pixels.active[i] && p.optic[i] >= 0;
     if (mirrored.active[i]) exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(p.second, i);
   }
-  if (p.any_mirror) write_geometry(view.camera, mirrored, p, exact.frame);
+  if (p.any_mirror) {
+    write_geometry(view.camera, mirrored, p, exact.frame);
+    if (chains_.possible())
+      rays += follow_mirrors(view.camera, pixels, p, {false, extreme}, {&exact.frame, &exact.normal});
+  }
   return p.lens.any ? rays + refract_exact(view, extreme, pixels, p, exact) : rays;
 }
 
@@ -377,10 +319,9 @@ std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extr
   std::size_t rays = 0;
   std::array<std::size_t, kLanes> sample{};  // lenses differ in their number of wavelengths
   for (int i = 0; i < kLanes; ++i)
-    if (p.lens.optic[i] >= 0) {
-      const auto extremes = extreme_samples(lenses_.sample_count_of(std::size_t(p.lens.optic[i])));
-      sample[std::size_t(i)] = extremes[std::min(extreme, extremes.size() - 1)];
-    }
+    if (p.lens.optic[i] >= 0)
+      sample[std::size_t(i)] =
+          extreme_sample(lenses_.sample_count_of(std::size_t(p.lens.optic[i])), extreme);
   lenses_.enter(view.camera, p.column, p.row, p.lens);
   PixelPacket waiting = pixels;
   for (int i = 0; i < kLanes; ++i) waiting.active[i] = pixels.active[i] && p.lens.optic[i] >= 0;
@@ -400,6 +341,9 @@ std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extr
       exact.normal[index_of(pixels, i, exact.frame)] = unit_normal(out.rays, i);
       ++rays;
     }
+    if (chains_.possible())
+      rays += follow_lenses(now, p, sample[std::size_t(first)], {false, extreme}, out,
+                            {&exact.frame, &exact.normal});
   }
   return rays;
 }

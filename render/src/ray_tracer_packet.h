@@ -7,6 +7,7 @@
 #include "optics/ray_scene.h"
 #include "render/frame.h"
 #include "render/src/exact_pixels.h"
+#include "render/src/ray_tracer_chain.h"
 #include "render/src/ray_tracer_exact.h"
 #include "render/src/ray_tracer_lens.h"
 #include "render/src/sampling.h"
@@ -71,18 +72,31 @@ class PacketTracer {
   bool find_mirrors(Packet& p) const;
   static void load_reflected(Packet& p);
   std::size_t refract(const PacketView& view, const PixelPacket& pixels, Packet& p, Frame* geometry) const;
-  void query_skipping_own_optic(Packet& p) const;
   void set_hits(const CameraRays& camera, Packet& p) const;
   std::size_t refract_exact(const PacketView& view, std::size_t extreme, const PixelPacket& pixels, Packet& p,
                             ExactPixels& exact) const;
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
                       Frame& frame) const;
 
+  /// Where the geometry of paths of several optics goes: the frame has it already as if the first optic were
+  /// the last. Null: nowhere.
+  struct GeometrySink {
+    Frame* frame = nullptr;
+    std::vector<glm::vec3>* normal = nullptr;
+  };
+  std::size_t follow_mirrors(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
+                             const ChainTask& task, const GeometrySink& sink) const;
+  std::size_t follow_lenses(const PixelPacket& pixels, const Packet& p, std::size_t sample,
+                            const ChainTask& task, RefractedLanes& out, const GeometrySink& sink) const;
+  static void write_ends(const PixelPacket& pixels, const MetOptics& met, const ChainEnds& ends,
+                         const GeometrySink& sink);
+
   const Scene& scene_;
   const optics::RayScene& rays_;
   ShadingScene shading_;
   std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic; null: a lens
   TracedLenses lenses_;
+  TracedChains chains_;
   std::vector<Float4> tints_;  ///< reflectance of each optic
 };
 

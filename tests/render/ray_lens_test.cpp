@@ -144,9 +144,10 @@ TEST(RayLens, EdgeSplitsByPrismOverAbbeNumber) {
   EXPECT_GT(slopes[1], slopes[2]);
 }
 
-// Of two lenses in a row the nearer one shows what is behind both.
-TEST(RayLens, NearestLensCountsAndTheOtherIsAbsent) {
+// Where one optic is all that a path may have, the nearer of two lenses in a row shows what is behind both.
+TEST(RayLens, AtDepthOneTheNearestLensCountsAndTheOtherIsAbsent) {
   Scene scene = wall_behind_lens(70, 0.6, 3000);
+  scene.settings.depth = 1;
   scene.optics.push_back(lens_of(400, 95.2, 2, 60, 25));
   const Frame alone = rendered(scene).frame;
   optics::Optic behind = lens_of(0, 0, 2, 50, 9);
@@ -191,8 +192,9 @@ TEST(RayLens, BlockedPathsShowTheRimColourByAmbientLight) {
 }
 
 // A lens between a mirror and what it shows, off the eye's way.
-TEST(RayLens, MirrorsDoNotShowLenses) {
+TEST(RayLens, AtDepthOneMirrorsDoNotShowLenses) {
   Scene scene = room();
+  scene.settings.depth = 1;
   scene.optics.push_back(conic_mirror(300, 0, 100, 80, 17, 17));
   const Frame alone = rendered(scene).frame;
   optics::Optic lens = lens_of(400, 95.2, 2, 60, 9);

@@ -194,13 +194,14 @@ TEST(RayTracerGeometry, FlippedMirrorReflectsOnTheOtherSide) {
   EXPECT_LT(frame.direction[middle].z, -0.99f);
 }
 
-TEST(RayTracerGeometry, MirrorShowsOtherMirrorsButNotItself) {
+TEST(RayTracerGeometry, AtDepthOneAMirrorShowsOtherMirrorsButNotItself) {
   // A concave mirror of short radius, whose own rim its rays would meet, and a second mirror before it.
   render::Scene scene = mirror_scene(test::conic_mirror(-110, 0, 170, 110, 21, 21), {0, 0, 300});
   optics::Optic second = test::conic_mirror(0, 0, 60, 60, 3, 3);
   for (auto& v : second.mesh.vertices)
     v.position_mm.z += 320;  // behind the eye, its reflecting side turned away
   second.reflectance = {0.2f, 0.4f, 0.6f};
+  scene.settings.depth = 1;
   scene.surroundings[0] = test::empty_mesh();
   test::add_quad(scene.surroundings[0], {-5000, -5000, 4000}, {0, 10000, 0}, {10000, 0, 0});
   scene.optics.push_back(std::move(second));
