@@ -68,6 +68,7 @@ ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
   return {{"frames", timing.frames},
           {"frame_ms", {{"min", *least}, {"median", timing.median_ms()}, {"max", *most}}},
           {"rays_per_frame", timing.rays_per_frame},
+          {"maps", timing.maps},
           {"speedup_vs_raytrace", raytrace_ms / timing.median_ms()},
           {"time_ms", pass_json(timing)}};
 }

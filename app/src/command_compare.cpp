@@ -64,6 +64,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   write_picture(error_picture(reference, render::error_map_arcmin(reference, result.frame)),
                 folder / ("error_" + name + ".png"), false);
   compared.json = {{"optics", optics_json(session.scene(), mode, result.stats, &compared.comparison.optics)},
+                   {"maps", maps_json(result.stats)},
                    {"image", image_json(compared.comparison.image)},
                    {"time_ms", time_json(compared.timing)}};
   if (!result.warnings.empty()) compared.json["warnings"] = result.warnings;

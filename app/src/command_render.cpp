@@ -55,6 +55,7 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
           {"mode", render::mode_name(mode)},
           {"samples", options.samples},
           {"optics", optics_json(session.scene(), mode, result.stats, nullptr)},
+          {"maps", maps_json(result.stats)},
           {"rays", result.stats.rays},
           {"time_ms", result.stats.time_ms},
           {"warnings", warnings},

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <vector>
 
+#include "app/src/report.h"
+
 namespace catoptra::app {
 
 double median(std::vector<double> values) {
@@ -32,6 +34,7 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
     timing.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     for (const auto& [name, ms] : result.stats.time_ms) timing.pass_ms[name].push_back(ms);
     timing.rays_per_frame = result.stats.rays;
+    timing.maps = maps_json(result.stats);
   }
   progress.clear();
   return timing;

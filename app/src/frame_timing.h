@@ -17,6 +17,7 @@ struct FrameTiming {
   std::vector<double> frame_ms;                        ///< wall clock of Renderer::render, one per frame
   std::map<std::string, std::vector<double>> pass_ms;  ///< each entry of FrameStats::time_ms, one per frame
   std::size_t rays_per_frame = 0;
+  nlohmann::ordered_json maps;  ///< maps_json() of the last frame
 
   [[nodiscard]] double median_ms() const;
 };

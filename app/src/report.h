@@ -27,6 +27,9 @@ inline constexpr double kIdenticalPsnr_db = 200;
                                                  const render::FrameStats& stats,
                                                  const std::vector<render::OpticError>* errors);
 
+/// One entry per map of mode pvrr, of optics in the picture and in each other.
+[[nodiscard]] nlohmann::ordered_json maps_json(const render::FrameStats& stats);
+
 [[nodiscard]] nlohmann::ordered_json image_json(const render::ImageError& image);
 
 /// What was used: Catoptra's version, the compiler and the libraries of this folder.

@@ -114,7 +114,7 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
       table.integer("soft_shadow_samples", 1, 4096).value_or(settings.soft_shadow_samples);
   // Parts of the format whose passes this version does not have: said once, never passed over in silence.
   std::string unused;
-  for (const std::string_view key : {"patch_fov_deg", "depth", "soft_shadow_samples"}) {
+  for (const std::string_view key : {"patch_fov_deg", "soft_shadow_samples"}) {
     if (table.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(key);
   }
   if (!unused.empty())

@@ -6,7 +6,7 @@ layout(location = 6) uniform float optic_id;
 layout(location = 0) out vec4 out_color;
 #ifdef GEOMETRY
 layout(location = 1) out vec4 out_position;  // world point shown, w = 1; or direction, w = 0
-layout(location = 2) out vec4 out_detail;    // last surface point, w = index of the first optic + 1; in maps: w = the way
+layout(location = 2) out vec4 out_detail;    // last surface point, w = the way (passed_detail)
 
 /// The point that a map shows along a ray, free of the map's resolution: the ray meets the plane of the nearest texel.
 /// `surface`: the point on the optic, before which nothing is shown.
@@ -52,14 +52,11 @@ vec4 shown_in_map(sampler2D positions, sampler2D details, vec2 at, vec3 ray_orig
   return shown / weights;
 }
 
-/// The detail that is written of light that has passed the optic and, before, `last.w`. Maps need to know which optics
-/// these were, pictures which was the first one.
+/// The detail that is written of light that has left the optic by the way `last.w`. A way is the sum of (index + 1)
+/// (number of optics + 1)^k over its optics, k = 0 for the first one that the eye sees; what a float cannot hold is left
+/// out from its end (as RasterPicture reads it).
 vec4 passed_detail(vec4 last) {
-#ifdef IN_MAP
-  return vec4(last.xyz, optic_id + 1.0 + mod(61.0 * last.w, 65536.0));
-#else
-  return vec4(last.xyz, optic_id + 1.0);
-#endif
+  return vec4(last.xyz, optic_id + 1.0 + parameters.z * mod(last.w, parameters.w));
 }
 
 /// That of a body like any other: maps need its normal.

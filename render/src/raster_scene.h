@@ -99,6 +99,9 @@ class RasterScene {
     bool clip;
   };
 
+  /// Of the numbers of ways by several optics, see raster_shown.glsl.
+  [[nodiscard]] float way_base() const;
+  [[nodiscard]] float way_limit() const;
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;

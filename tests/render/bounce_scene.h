@@ -1,4 +1,5 @@
-// Mirrors that see each other, and the paths of light between them in closed form, independent of the renderer.
+// Mirrors that see each other, and the paths of light between them in closed form, independent of the
+// renderer.
 #pragma once
 
 #include <cmath>
@@ -53,8 +54,8 @@ struct PlacedMirror {
 
 /// The way of one ray of the eye by up to `depth` mirrors.
 struct Bounces {
-  std::vector<int> mirrors;           ///< met with their reflecting side
-  int body = -1;                      ///< the mirror that ends the way as a plain body or by its back; -1: none
+  std::vector<int> mirrors;  ///< met with their reflecting side
+  int body = -1;             ///< the mirror that ends the way as a plain body or by its back; -1: none
   glm::dvec3 point_mm{0}, direction{0};  ///< the last ray
 };
 
@@ -96,39 +97,32 @@ inline render::Scene scene_of(const std::vector<PlacedMirror>& mirrors, int vert
 
 /// What `frame` shows against the closed form, by the number of mirrors on the way (index 0: none).
 struct BounceErrors {
-  std::vector<std::vector<double>> arcmin;  ///< at the last mirror, ascending
-  std::vector<std::size_t> elsewhere;       ///< pixels whose last surface point is on another mirror
+  std::vector<std::vector<double>>
+      arcmin;                          ///< at the last mirror, where the frame shows the same way; ascending
+  std::vector<std::size_t> other_way;  ///< pixels in which it shows another one
+
+  explicit BounceErrors(int depth) : arcmin(std::size_t(depth) + 1), other_way(std::size_t(depth) + 1, 0) {}
 };
 
 inline BounceErrors bounce_errors(const render::Scene& scene, const std::vector<PlacedMirror>& mirrors,
                                   const render::Frame& frame) {
   const auto rays = render::camera_rays(scene.camera, frame.width, frame.height);
-  BounceErrors errors;
+  BounceErrors errors(scene.settings.depth);
   for (int row = 0; row < frame.height; ++row)
     for (int column = 0; column < frame.width; ++column) {
       const auto i = std::size_t(row) * std::size_t(frame.width) + std::size_t(column);
-      const Bounces way = follow(
-          mirrors, rays.eye_mm, glm::normalize(rays.corner + double(column) * rays.dx + double(row) * rays.dy),
-          scene.settings.depth);
-      if (way.mirrors.empty() || frame.optic_id[i] != way.mirrors[0]) continue;
-      const std::size_t count = way.mirrors.size();
-      errors.arcmin.resize(std::max(errors.arcmin.size(), count + 1));
-      errors.elsewhere.resize(errors.arcmin.size(), 0);
-      // A texel in the map may show the neighbouring way at its border; how many do is counted.
-      const glm::dvec3 on_last = mirrors[std::size_t(way.mirrors.back())].at.own_point(
-          glm::dvec3(frame.surface[i]));
-      const auto& last = mirrors[std::size_t(way.mirrors.back())];
-      const bool there = std::abs(on_last.z) < 1e-2 + (last.radius_mm == 0 ? 0 : 150) &&
-                         std::abs(on_last.x) < last.width_mm && std::abs(on_last.y) < last.height_mm &&
-                         glm::distance(glm::dvec3(frame.surface[i]), way.point_mm) <
-                             0.2 * (last.width_mm + last.height_mm);
-      if (getenv("DBG") && ((row*320+column)%97==0) && (!there || angle_arcmin(way.direction, shown_direction(frame, i, way.point_mm))>100)) { printf("px %d %d there %d chain",column,row,there); for(int m:way.mirrors) printf(" %d",m); printf(" body %d exact surf %.1f %.1f %.1f shown surf %.1f %.1f %.1f pos %.1f %.1f %.1f w%.0f dir %.3f %.3f %.3f onlast %.4f %.1f %.1f\n",way.body,way.point_mm.x,way.point_mm.y,way.point_mm.z,frame.surface[i].x,frame.surface[i].y,frame.surface[i].z,frame.position[i].x,frame.position[i].y,frame.position[i].z,frame.position[i].w,way.direction.x,way.direction.y,way.direction.z,on_last.z,on_last.x,on_last.y);}
-      if (!there) {
-        ++errors.elsewhere[count];
-        continue;
-      }
-      errors.arcmin[count].push_back(
-          angle_arcmin(way.direction, shown_direction(frame, i, way.point_mm)));
+      const Bounces way =
+          follow(mirrors, rays.eye_mm,
+                 glm::normalize(rays.corner + double(column) * rays.dx + double(row) * rays.dy),
+                 scene.settings.depth);
+      if (way.mirrors.empty()) continue;
+      std::uint32_t path = 0;
+      for (const int mirror : way.mirrors) path = render::path_after(path, mirror);
+      if (render::path_of(frame, i) != path || frame.bounces[i] != way.mirrors.size())
+        ++errors.other_way[way.mirrors.size()];
+      else
+        errors.arcmin[way.mirrors.size()].push_back(
+            angle_arcmin(way.direction, shown_direction(frame, i, way.point_mm)));
     }
   for (auto& list : errors.arcmin) std::sort(list.begin(), list.end());
   return errors;
