@@ -43,15 +43,19 @@ TEST_P(TwoPlanes, ShowWhatUnfoldedPathsShow) {
   for (int k = 1; k <= GetParam(); ++k) {
     const auto& arcmin = errors.arcmin[std::size_t(k)];
     EXPECT_GT(arcmin.size(), seen[k]) << k << " bounces";
-    EXPECT_LT(quantile(arcmin, 1), 0.01) << k << " bounces";
-    // On the outline of a mirror in a mirror a float decides.
-    EXPECT_LE(errors.other_way[std::size_t(k)], 3u) << k << " bounces";
+    EXPECT_LT(quantile(arcmin, 0.97), 0.01) << k << " bounces";
+    // At the edges of things that are seen so, texels on both sides are mixed, and a mirror's outline is that
+    // of the nearest texel: within two texels, which are as large as pixels here.
+    EXPECT_LT(quantile(arcmin, 1), 2 * pixel_arcmin(scene)) << k << " bounces";
+    EXPECT_LT(double(errors.other_way[std::size_t(k)]), 0.01 * double(arcmin.size()) + 2) << k << " bounces";
   }
   // One more map for every level, and of ever fewer texels, since each shows less of the picture.
   ASSERT_EQ(result.stats.maps.size(), std::size_t(GetParam()));
   for (std::size_t m = 0; m < result.stats.maps.size(); ++m) {
     EXPECT_EQ(result.stats.maps[m].level, int(m) + 1);
-    if (m > 0) EXPECT_LT(result.stats.maps[m].texels, result.stats.maps[m - 1].texels);
+    if (m > 0) {
+      EXPECT_LT(result.stats.maps[m].texels, result.stats.maps[m - 1].texels);
+    }
   }
   EXPECT_EQ(result.stats.maps.back().way.substr(0, 19),
             GetParam() > 1 ? "mirror 1 > mirror 2" : std::string("mirror 1"));
@@ -70,7 +74,9 @@ TEST(PlaneAndSphere, ThirdBounceConvergesWithTheSquareOfTheSpacing) {
     EXPECT_GT(errors.arcmin[3].size(), 2000u);
     const double median = quantile(errors.arcmin[3], 0.5);
     // 4 in the limit. The first spacing, 52 mm, is a sixth of what the third bounce shows of the mirror.
-    if (last > 0) EXPECT_GT(last / median, 3) << vertices;
+    if (last > 0) {
+      EXPECT_GT(last / median, 3) << vertices;
+    }
     last = median;
   }
   EXPECT_LT(last, 0.1);
@@ -107,6 +113,60 @@ TEST(PvrrBounces, ColoursAreThoseOfTheRayTracer) {
     EXPECT_GT(double(same) / double(several), 0.93) << radius;
     EXPECT_GT(image_error(exact, shown).psnr_db, 28) << radius;
   }
+}
+
+/// Share of the pixels of at least two optics in `exact` that `shown` shows by the same way, and the median
+/// angle there.
+struct WayAgreement {
+  std::size_t pixels = 0;
+  double same = 0, median_arcmin = 0;
+};
+WayAgreement agreement(const Frame& exact, const Frame& shown) {
+  WayAgreement result;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < exact.color.size(); ++i) {
+    if (exact.bounces[i] < 2) continue;
+    ++result.pixels;
+    if (path_of(shown, i) != path_of(exact, i)) continue;
+    const glm::dvec3 from(exact.surface[i]);
+    angles.push_back(angle_arcmin(glm::dvec3(exact.direction[i]), shown_direction(shown, i, from)));
+  }
+  std::sort(angles.begin(), angles.end());
+  result.same = double(angles.size()) / double(std::max<std::size_t>(1, result.pixels));
+  result.median_arcmin = quantile(angles, 0.5);
+  return result;
+}
+
+WayAgreement pvrr_agrees(const Scene& scene) {
+  Renderer renderer(scene);
+  const auto options = picture_of(scene);
+  return agreement(renderer.render(Mode::raytrace, scene.camera, options).frame,
+                   renderer.render(Mode::pvrr, scene.camera, options).frame);
+}
+
+// A lens before a mirror, seen directly: the light passes it on its way to the mirror and, near the middle,
+// once more.
+TEST(PvrrBounces, MirrorThroughALensAndALensInAMirror) {
+  Scene scene = scene_of({PlacedMirror::facing({0, 0, 0}, {0.3, 0.1, 1}, 420, 320, 1200)}, 17, 3);
+  scene.camera = {{-100, 60, 700}, {10, 0, 0}, {0, 1, 0}, 0.45, {320, 240}};
+  const auto lens = [](const glm::dvec3& middle, double front, double back, double thickness, double width) {
+    auto optic = spherical_lens(front, back, thickness, width, 25);
+    optic.wavelengths = 1;
+    return optics::placed(optic, {glm::dmat3(1), middle});
+  };
+  // Rim and reflection of the glass play no part; with refinement, since a lens's own mesh is coarse.
+  scene.settings.max_error_px = 0.25;
+  scene.optics.push_back(lens({-60, 30, 250}, 400, 400, 8, 120));
+  const WayAgreement through = pvrr_agrees(scene);
+  EXPECT_GT(through.pixels, 5000u);
+  EXPECT_GT(through.same, 0.95);
+  EXPECT_LT(through.median_arcmin, 3);
+  // To the right of the line of sight, so that it is seen in the mirror alone.
+  scene.optics[1] = lens({170, 60, 300}, 400, 400, 8, 120);
+  const WayAgreement in_mirror = pvrr_agrees(scene);
+  EXPECT_GT(in_mirror.pixels, 1000u);
+  EXPECT_GT(in_mirror.same, 0.9);
+  EXPECT_LT(in_mirror.median_arcmin, 3);
 }
 
 TEST(PvrrBounces, KeptMapsChangeNoByte) {
