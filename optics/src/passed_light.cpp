@@ -54,6 +54,32 @@ std::optional<Miss> miss_of(const VertexHit& ray, const glm::dvec3& point_mm) {
   return miss;
 }
 
+/// The surface beyond its border: that of second order which touches it at `vertex`, met along `along` from a
+/// place `step_mm` beside.
+tessellate::OpticVertex continued(const tessellate::OpticVertex& vertex, const glm::dvec3& along,
+                                  const glm::dvec3& step_mm) {
+  tessellate::OpticVertex beyond = vertex;
+  const glm::dvec3& n = vertex.normal;
+  const glm::dvec3 in_plane = step_mm - along * (glm::dot(step_mm, n) / glm::dot(along, n));
+  const glm::dvec3 direction2 = glm::cross(n, vertex.direction1);
+  const double x = glm::dot(in_plane, vertex.direction1), y = glm::dot(in_plane, direction2);
+  beyond.position_mm += in_plane - 0.5 * (vertex.k1 * x * x + vertex.k2 * y * y) * n;
+  beyond.normal = glm::normalize(n + vertex.k1 * x * vertex.direction1 + vertex.k2 * y * direction2);
+  return beyond;
+}
+
+/// The point of the exact surface that a ray along `along` meets from a place `step_mm` beside the vertex.
+tessellate::OpticVertex moved_vertex(const LensSideView& side, const tessellate::OpticVertex& vertex,
+                                     const glm::dvec3& along, const glm::dvec3& step_mm) {
+  const cad_import::ExactSurface& surface = *side.faces[std::size_t(vertex.face)].surface;
+  const double back = 10 + 10 * glm::length(step_mm);
+  const auto hit = newton_hit(surface, {vertex.position_mm + step_mm - back * along, along}, vertex.uv);
+  if (!hit) return continued(vertex, along, step_mm);
+  const auto curvature = surface.principal_curvatures(hit->uv.x, hit->uv.y);
+  return {hit->position_mm,     hit->normal, curvature.k1, curvature.k2,
+          curvature.direction1, vertex.face, hit->uv};
+}
+
 /// The ray through the point, by the differentials of one near it.
 Arrival arrival_by(const VertexHit& ray, const Miss& miss, const glm::dvec3& step_mm,
                    const glm::dvec3& point_mm) {
@@ -104,18 +130,8 @@ std::optional<std::size_t> PassedLight::nearest(const glm::dvec3& point_mm) cons
 }
 
 std::optional<PassedLight::Place> PassedLight::moved(const Place& from, const glm::dvec3& step_mm) const {
-  if (from.vertex.face < 0 || std::size_t(from.vertex.face) >= side_.faces.size()) return std::nullopt;
-  const cad_import::ExactSurface& surface = *side_.faces[std::size_t(from.vertex.face)].surface;
-  const double back = 10 + 10 * glm::length(step_mm);
-  const auto hit =
-      newton_hit(surface, {from.vertex.position_mm + step_mm - back * from.ray.from_eye, from.ray.from_eye},
-                 from.vertex.uv);
-  if (!hit) return std::nullopt;
-  const auto curvature = surface.principal_curvatures(hit->uv.x, hit->uv.y);
-  Place place{{hit->position_mm, hit->normal, curvature.k1, curvature.k2, curvature.direction1,
-               from.vertex.face, hit->uv},
-              {}};
-  const Arrival arrival = arrival_(hit->position_mm);
+  Place place{moved_vertex(side_, from.vertex, from.ray.from_eye, step_mm), {}};
+  const Arrival arrival = arrival_(place.vertex.position_mm);
   place.ray = optic_->kind == OpticKind::lens
                   ? refract_vertex(place.vertex, *optic_, *tracer_, entered_, indices_, arrival)
                   : reflect_vertex(place.vertex, *optic_, arrival);
@@ -135,7 +151,7 @@ std::optional<Arrival> PassedLight::to(const glm::dvec3& point_mm) const {
     if (!(length < kLongestStep * reach_mm_)) return std::nullopt;
     const glm::dvec3 step_mm = across_mm.x * miss->in.a + across_mm.y * miss->in.b;
     const auto next = length < kLinear_mm || step == kMostSteps ? std::nullopt : moved(place, step_mm);
-    // Where the surface ends, or light does not pass, it goes on from here by its differentials.
+    // Where light does not pass it goes on from here by its differentials.
     if (!next) return arrival_by(place.ray, *miss, step_mm, point_mm);
     place = *next;
   }
