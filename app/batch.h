@@ -7,6 +7,7 @@
 // JSON, and put into the database by whoever owns it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -118,6 +119,9 @@ struct BatchRunOptions {
   std::size_t jobs = 0;  ///< threads; 0: all. Results do not depend on it.
   /// Called after every result, from one thread at a time.
   std::function<void(const BatchProgress&)> progress;
+  /// Becomes true from outside: no further case is begun, those in hand are finished and stored, and
+  /// run_batch() returns with fewer than were wanted. Null: never.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Computes what is pending of `plan`, on all cores, and puts it into `store`; add() is called first. Throws

@@ -29,6 +29,7 @@ struct SurroundingSource {
   /// The file's own optics, if it is the rest (back, edge, housing) of an optic's file: indices in
   /// scene.optics.
   std::vector<std::size_t> optics;
+  std::filesystem::path file = {};  ///< that it was read from; empty for the rest of an optic's file
 };
 
 /// The table [evaluation]: the vehicle around a mirror, as the rules see it. What is left out is taken from
@@ -51,7 +52,8 @@ struct EvaluationSettings {
 /// A scene and the CAD data under it.
 struct SceneFile {
   render::Scene scene;
-  std::vector<OpticSource> optic_sources;              ///< one per entry of scene.optics, in its order
+  std::filesystem::path path;              ///< of the file itself; empty where its text came from elsewhere
+  std::vector<OpticSource> optic_sources;  ///< one per entry of scene.optics, in its order
   std::vector<SurroundingSource> surrounding_sources;  ///< one per entry of scene.surroundings, in its order
   EvaluationSettings evaluation;
   double unit_mm = 1;  ///< length of the file's unit

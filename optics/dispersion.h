@@ -64,6 +64,12 @@ class Dispersion {
   [[nodiscard]] double index(double wavelength_nm) const;
   [[nodiscard]] bool in_range(double wavelength_nm) const;
 
+  /// What the curve was made from; `samples` (by rising wavelength) where the formula is table, else
+  /// `coefficients`.
+  [[nodiscard]] DispersionFormula formula() const { return formula_; }
+  [[nodiscard]] const std::vector<double>& coefficients() const { return coefficients_; }
+  [[nodiscard]] const std::vector<IndexSample>& samples() const { return samples_; }
+
   /// (n_d - 1) / (n_F - n_C); infinity without dispersion.
   [[nodiscard]] double abbe_number_d() const;
   /// (n_e - 1) / (n_F' - n_C').

@@ -20,9 +20,14 @@ struct OpticError {
   /// Left out because both pictures show what touches the optic there (the rim around a glass): so near to
   /// it that the coordinates, which frames keep as floats, do not tell the direction to an arcminute.
   std::size_t touching_pixels = 0;
-  ErrorQuantiles arcmin;  ///< angle at the last surface point between the exact direction and what is shown
-  /// The same in pixels, through the local derivative of the exact ray by pixel. Left out on caustics, where
-  /// it is singular.
+  /// Wrong: both pictures show the optic first, but then by another sequence of optics (a mirror as a plain
+  /// body, a lens left out, another one of two mirrors). No angle tells how wrong: left out of the quantiles.
+  std::size_t other_path_pixels = 0;
+  /// Angle at the exact last surface point of the path (of the last optic along it) between the exact last
+  /// direction and what is shown.
+  ErrorQuantiles arcmin;
+  /// The same in pixels, through the local derivative of the exact last ray by pixel, among pixels of the
+  /// same path. Left out on caustics, where it is singular.
   ErrorQuantiles screen_px;
 };
 
@@ -41,6 +46,9 @@ struct Comparison {
 /// else throws catoptra::Error. Quantiles are nearest-rank; an optic that shows nowhere has 0 pixels and
 /// zeros.
 [[nodiscard]] Comparison compare(const Frame& reference, const Frame& frame, const Scene& scene);
+
+/// Of pixels whose path is another one in error_map_arcmin(): half a turn, the largest angle there is.
+inline constexpr float kOtherPath_arcmin = 180 * 60;
 
 /// Per-pixel error in arcmin (-1 where there is none), for error pictures.
 [[nodiscard]] std::vector<float> error_map_arcmin(const Frame& reference, const Frame& frame);

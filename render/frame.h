@@ -5,8 +5,11 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "render/mode.h"
 
 namespace catoptra::render {
 
@@ -82,6 +85,7 @@ struct RenderResult {
   Frame frame;
   FrameStats stats;
   std::vector<std::string> warnings;
+  std::optional<ModeChoice> choice;  ///< mode automatic: which mode drew, and why
 };
 
 /// Options of one frame.

@@ -3,19 +3,13 @@
 
 #include <glm/mat4x4.hpp>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 #include "render/frame.h"
+#include "render/mode.h"
 #include "render/scene.h"
 
 namespace catoptra::render {
-
-enum class Mode { pvrr, hybrid, exact, raytrace, cubemap };
-
-[[nodiscard]] std::string_view mode_name(Mode mode);
-[[nodiscard]] std::optional<Mode> mode_from_name(std::string_view name);
 
 /// Everything the modes share for one scene, built once and used for many frames: decoded textures, the ray
 /// scene, and, on first use, the GL context with the uploaded surroundings.
@@ -28,7 +22,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws catoptra::Error where a mode needs OpenGL and no context can be made (it lists what was tried).
+  /// Throws catoptra::Error where a mode needs OpenGL and no context can be made (it lists what was tried);
+  /// Mode::automatic traces then.
   [[nodiscard]] RenderResult render(Mode mode, const Camera& camera, const FrameOptions& options);
 
   /// Time in ms of the bare packet queries of a raytrace frame: the yardstick of the reference's speed.

@@ -33,8 +33,8 @@ struct Light {
 
 struct Environment {
   glm::vec3 color{0.45f, 0.6f, 0.85f};  ///< linear radiance where no `sky` is given
-  std::string sky;                      ///< path of an equirectangular image; empty: none. +z is up, centre is +y
-  float ambient = 0.3f;                 ///< irradiance from everywhere, white
+  std::string sky;       ///< path of an equirectangular image; empty: none. +z is up, centre is +y
+  float ambient = 0.3f;  ///< irradiance from everywhere, white
 };
 
 struct RenderSettings {

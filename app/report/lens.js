@@ -43,7 +43,7 @@ const placeGrid = (points) => gridOf(points, (p) => p.x_mm, (p) => p.y_mm);
 function lensMaps(points, byGaze) {
   const grid = byGaze ? gazeGrid(points) : placeGrid(points);
   if (!grid) return null;
-  const axes = byGaze ? {x: "gaze to the right, seen from before the wearer, °", y: "gaze up, °"} : {x: "to the right, seen from before the wearer, mm", y: "up, mm"};
+  const axes = byGaze ? {x: "gaze to the right, seen from before the wearer, °", y: "gaze up, °", measure: kDirections} : {x: "to the right, seen from before the wearer, mm", y: "up, mm"};
   const plots = make("div", {class: "plots"});
   for (const map of kLensMaps) {
     const values = grid.cells.map((row) => row.map((p) => (p ? map.value(p) : NaN)));

@@ -26,8 +26,10 @@ function fieldPlan(mirror) {
   // As near as there is something to tell: the cut for the horizon lies far beyond.
   const deepest = Math.min(field.far_mm || 60000, 60000) / 1000;
   return figure("Field of view on the road", "m, seen from above, forward is up", traces, {
-    xaxis: {title: {text: "to the right, m"}, zeroline: false, range: [-20, 20], constrain: "domain"},
-    yaxis: {title: {text: "ahead, m"}, zeroline: false, range: [-deepest, 6], scaleanchor: "x"},
+    // Ranges end between ticks: those of both axes would meet in the corner.
+    xaxis: {title: {text: "to the right, m", standoff: 6}, zeroline: false, range: [-23, 23], dtick: 10, ticks: "outside", constrain: "domain"},
+    yaxis: {title: {text: "ahead, m", standoff: 6}, zeroline: false, range: [-deepest - 3, 6], dtick: 10, ticks: "outside", scaleanchor: "x",
+            constrain: "domain"},
     margin: {l: 54, r: 12, t: 34, b: 130}, legend: {orientation: "h", x: 0, y: -0.12, yanchor: "top"}
   }, true);
 }

@@ -82,6 +82,8 @@ class LensSubject final : public CaseSubject {
   LensSubject(const cad_import::CadModel& model, const LensCase& first) {
     LensSourceOptions options;
     options.medium = first.material.medium();
+    options.front_faces = first.front_faces;
+    options.back_faces = first.back_faces;
     lens_ = lens_of_model(model, options);
     center_thickness_mm_ =
         cad_import::measure_lens(lens_.lens.faces, lens_.lens.back.faces, model.file).center_thickness_mm;
@@ -127,8 +129,9 @@ class LensSubject final : public CaseSubject {
 
   const optics::LensEvaluator& evaluator(const CaseMaterial& material) const {
     const std::lock_guard lock(mutex_);
-    auto& found =
-        materials_[nlohmann::json{material.name, material.nd.value_or(0), material.vd.value_or(0)}.dump()];
+    auto& found = materials_[nlohmann::json{material.name, material.catalogue_sha256, material.nd.value_or(0),
+                                            material.vd.value_or(0)}
+                                 .dump()];
     if (!found.evaluator) {
       // A thread that waits inside must not take up another case, which would want the same lock.
       tbb::this_task_arena::isolate([&] {
@@ -150,10 +153,15 @@ class LensCaseEvaluator final : public CaseEvaluator {
  public:
   std::string subject_of(const BatchCase& batch_case) const override {
     const auto inputs = nlohmann::json::parse(batch_case.inputs);
-    if (inputs.contains("lens_sha256")) return inputs.at("lens_sha256").get<std::string>();
     auto lens = nlohmann::json::object();
-    for (const BlankNumber& number : blank_numbers()) lens[number.column] = inputs.at(number.column);
-    for (const char* key : {"front", "asphere_mm", "material", "nd", "vd"}) lens[key] = inputs.at(key);
+    const auto add = [&](const char* key) {
+      if (inputs.contains(key)) lens[key] = inputs.at(key);
+    };
+    for (const char* key : {"lens_sha256", "front_faces", "back_faces"}) add(key);
+    if (lens.contains("lens_sha256")) return lens.dump();  // for all materials
+    for (const BlankNumber& number : blank_numbers()) add(number.column);
+    for (const char* key : {"front", "asphere_mm", "outline_mm", "material", "nd", "vd", "catalogue_sha256"})
+      add(key);
     return lens.dump();
   }
 

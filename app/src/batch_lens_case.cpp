@@ -4,6 +4,7 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/src/glass_json.h"
 #include "app/src/lens_front.h"
 #include "cad_import/error.h"
 
@@ -48,6 +49,18 @@ json number_or_null(std::optional<double> value) {
   return value ? json(*value) : json(nullptr);
 }
 
+json pairs_json(const std::vector<glm::dvec2>& pairs) {
+  json list = json::array();
+  for (const glm::dvec2& p : pairs) list.push_back({p.x, p.y});
+  return list;
+}
+
+std::vector<glm::dvec2> pairs_from(const json& list) {
+  std::vector<glm::dvec2> pairs;
+  for (const json& p : list) pairs.emplace_back(p.at(0).get<double>(), p.at(1).get<double>());
+  return pairs;
+}
+
 json blank_json(LensBlank blank) {
   leave_out_idle(blank);
   json inputs;
@@ -56,6 +69,7 @@ json blank_json(LensBlank blank) {
         number.value ? json(blank.*number.value + 0.0) : number_or_null(blank.*number.optional_value);
   inputs["front"] = front_name(blank.front);
   inputs["asphere_mm"] = blank.asphere_mm;
+  if (!blank.outline.empty()) inputs["outline_mm"] = pairs_json(blank.outline);
   return inputs;
 }
 
@@ -72,6 +86,7 @@ LensBlank blank_from(const json& inputs) {
   if (!front) refuse("has an unknown form of front");
   blank.front = *front;
   blank.asphere_mm = inputs.at("asphere_mm").get<std::vector<double>>();
+  if (inputs.contains("outline_mm")) blank.outline = pairs_from(inputs.at("outline_mm"));
   return blank;
 }
 
@@ -85,14 +100,31 @@ json index_json(const LensCase& lens_case) {
 
 json gaze_json(const CaseGaze& gaze) {
   if (gaze.directions_deg.empty()) return {{"gaze_max_deg", gaze.max_deg}, {"gaze_step_deg", gaze.step_deg}};
-  json directions = json::array();
-  for (const glm::dvec2& d : gaze.directions_deg) directions.push_back({d.x, d.y});
-  return {{"gaze_deg", std::move(directions)}};
+  return {{"gaze_deg", pairs_json(gaze.directions_deg)}};
+}
+
+json faces_json(const std::vector<FaceSelector>& faces) {
+  json list = json::array();
+  for (const FaceSelector& face : faces) std::visit([&](const auto& value) { list.push_back(value); }, face);
+  return list;
+}
+
+std::vector<FaceSelector> faces_from(const json& inputs, const char* key) {
+  std::vector<FaceSelector> faces;
+  if (inputs.contains(key))
+    for (const json& face : inputs.at(key)) {
+      if (face.is_string())
+        faces.emplace_back(face.get<std::string>());
+      else
+        faces.emplace_back(face.get<int>());
+    }
+  return faces;
 }
 
 }  // namespace
 
 optics::Medium CaseMaterial::medium() const {
+  if (own) return *own;
   if (!name.empty()) return optics::built_in_media().find(name);
   return vd ? optics::abbe_medium(nd.value(), *vd) : optics::constant_medium(nd.value());
 }
@@ -140,6 +172,14 @@ std::string to_inputs(const LensCase& lens_case) {
     inputs.update(blank_json(*lens_case.blank));
   else
     inputs["lens_sha256"] = lens_case.file_sha256;
+  // Below: only where they are given, so that cases without them keep their keys.
+  if (lens_case.material.own) {
+    inputs["catalogue_sha256"] = lens_case.material.catalogue_sha256;
+    inputs["glass"] = glass_json(*lens_case.material.own);
+  }
+  for (const auto& [key, faces] :
+       {std::pair{"front_faces", &lens_case.front_faces}, {"back_faces", &lens_case.back_faces}})
+    if (!lens_case.blank && !faces->empty()) inputs[key] = faces_json(*faces);
   return inputs.dump();
 }
 
@@ -151,7 +191,14 @@ LensCase lens_case_from(std::string_view text) try {
     return inputs.at(key).is_null() ? std::nullopt : std::optional(inputs.at(key).get<double>());
   };
   LensCase result;
-  result.material = {inputs.at("material").get<std::string>(), optional("nd"), optional("vd")};
+  result.material = {inputs.at("material").get<std::string>(), optional("nd"), optional("vd"), {}, {}};
+  if (inputs.contains("glass")) {
+    result.material.own =
+        std::make_shared<const optics::Medium>(glass_from(inputs.at("glass"), result.material.name));
+    result.material.catalogue_sha256 = inputs.at("catalogue_sha256").get<std::string>();
+  }
+  result.front_faces = faces_from(inputs, "front_faces");
+  result.back_faces = faces_from(inputs, "back_faces");
   optics::EvaluationOptions& o = result.options;
   o.mode =
       inputs.at("mode") == "as-worn" ? optics::EvaluationMode::as_worn : optics::EvaluationMode::lensmeter;
@@ -163,8 +210,7 @@ LensCase lens_case_from(std::string_view text) try {
   if (const auto distance = optional("object_distance_mm")) o.object_distance_mm = *distance;
   o.wavelength_nm = inputs.at("wavelength_nm").get<double>();
   if (inputs.contains("gaze_deg"))
-    for (const json& d : inputs.at("gaze_deg"))
-      result.gaze.directions_deg.emplace_back(d.at(0).get<double>(), d.at(1).get<double>());
+    result.gaze.directions_deg = pairs_from(inputs.at("gaze_deg"));
   else
     result.gaze = {inputs.at("gaze_max_deg").get<double>(), inputs.at("gaze_step_deg").get<double>(), {}};
   if (inputs.contains("lens_sha256"))
@@ -185,10 +231,29 @@ std::span<const std::string> lens_input_columns() {
   static const std::vector<std::string> columns = [] {
     std::vector<std::string> names{"lens_sha256"};
     for (const BlankNumber& number : kBlankNumbers) names.emplace_back(number.column);
-    for (const char* name :
-         {"front", "asphere_mm", "material", "nd", "vd", "index", "index_f", "index_c", "mode", "eye",
-          "rotation_centre_mm", "vertex_distance_mm", "panto_deg", "wrap_deg", "object_distance_mm",
-          "wavelength_nm", "gaze_max_deg", "gaze_step_deg", "gaze_deg"})
+    for (const char* name : {"front",
+                             "asphere_mm",
+                             "material",
+                             "nd",
+                             "vd",
+                             "index",
+                             "index_f",
+                             "index_c",
+                             "mode",
+                             "eye",
+                             "rotation_centre_mm",
+                             "vertex_distance_mm",
+                             "panto_deg",
+                             "wrap_deg",
+                             "object_distance_mm",
+                             "wavelength_nm",
+                             "gaze_max_deg",
+                             "gaze_step_deg",
+                             "gaze_deg",
+                             "front_faces",
+                             "back_faces",
+                             "outline_mm",
+                             "catalogue_sha256"})
       names.emplace_back(name);
     return names;
   }();

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "app/src/mirror_faces.h"
 #include "cad_import/lens_blank.h"
 #include "optics/lens_evaluation.h"
 #include "optics/medium.h"
@@ -19,6 +21,10 @@ namespace catoptra::app {
 struct CaseMaterial {
   std::string name;              ///< of the built-in catalogue; empty: given by the next two
   std::optional<double> nd, vd;  ///< index and Abbe number, or an index alone for all wavelengths
+  /// Where `name` is a glass of one's own: it and the hash of its catalogue. Cases carry its dispersion, so
+  /// that whoever computes them needs no file.
+  std::shared_ptr<const optics::Medium> own;
+  std::string catalogue_sha256;
 
   /// Throws catoptra::Error with the nearest names where there is no such material.
   [[nodiscard]] optics::Medium medium() const;
@@ -34,8 +40,9 @@ struct CaseGaze {
 };
 
 struct LensCase {
-  std::string file_sha256;                     ///< of a lens file, or
-  std::optional<cad_import::LensBlank> blank;  ///< a lens to order; its index is that of `material`
+  std::string file_sha256;                            ///< of a lens file, with
+  std::vector<FaceSelector> front_faces, back_faces;  ///< its sides (empty: recognised), or
+  std::optional<cad_import::LensBlank> blank;         ///< a lens to order; its index is that of `material`
   CaseMaterial material;
   optics::EvaluationOptions options;   ///< but for its two angles, which are
   double panto_deg = 0, wrap_deg = 0;  ///< so that a number stays the one that the plan has

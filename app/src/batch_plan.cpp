@@ -1,5 +1,5 @@
-// A batch plan (TOML) into cases: lenses x materials x poses x wavelengths x gaze, each case once.
-#include <algorithm>
+// A batch plan (TOML) into cases, each once: the combinations of lenses, materials, poses, wavelengths and
+// gaze, or the draws of a sample.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -7,179 +7,163 @@
 
 #include "app/batch.h"
 #include "app/src/batch_plan_parts.h"
-#include "app/src/batch_sweep.h"
 #include "app/src/file_hash.h"
 #include "cad_import/error.h"
-#include "optics/dispersion.h"
 
 namespace catoptra::app {
 namespace {
-
-/// Visible light and a little more, where the catalogue's dispersion holds.
-constexpr Range kWavelengths{380, 780};
-
-/// Beyond it a lens does not reach, and the tangent of the angle grows without bound.
-constexpr double kWidestGaze_deg = 80;
 
 std::string read_all(std::istream& stream) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-CaseGaze read_gaze(const TomlTable& table) {
-  CaseGaze gaze;
-  const toml::node* directions = table.node("directions_deg");
-  if (!directions) {
-    gaze.max_deg = table.number("max_deg", {0, kWidestGaze_deg}).value_or(gaze.max_deg);
-    gaze.step_deg = table.number("step_deg", Range::positive()).value_or(gaze.step_deg);
-    const double a_side = 2 * gaze.max_deg / gaze.step_deg + 1;
-    if (!(a_side * a_side <= double(kMostDirections)))
-      table.fail("step_deg", "the grid has more than " + std::to_string(kMostDirections) + " directions");
-    return gaze;
-  }
-  if (table.has("max_deg") || table.has("step_deg"))
-    table.fail("directions_deg", "directions_deg excludes max_deg and step_deg");
-  const toml::array* array = directions->as_array();
-  if (!array || array->empty())
-    table.fail("directions_deg", "expected a list of directions", "[[0, 0], [20, 0]]");
-  if (array->size() > kMostDirections)
-    table.fail("directions_deg", "has more than " + std::to_string(kMostDirections) + " directions");
-  for (const toml::node& direction : *array) {
-    const auto angles = table.numbers_of(direction, "directions_deg", 2, {-kWidestGaze_deg, kWidestGaze_deg});
-    gaze.directions_deg.emplace_back(angles[0] + 0.0, angles[1] + 0.0);
-  }
-  return gaze;
-}
-
-/// One key of a pose and where it goes.
-struct PoseSweep {
-  const char* key;
-  double* value;
-  Range range;
-  Sweep sweep;
+struct Plan {
+  std::vector<PlanLenses> lenses;
+  std::vector<std::vector<PlanPose>> poses;  ///< by table
+  std::vector<double> wavelengths_nm;
+  std::vector<CaseGaze> gazes;
 };
 
-void read_pose(const TomlTable& table, std::vector<LensCase>& poses) {
-  LensCase pose;
-  optics::WearingPosition& position = pose.options.position;
-  const bool worn = table.choice("mode", {"lensmeter", "as-worn"}).value_or("lensmeter") == "as-worn";
-  pose.options.mode = worn ? optics::EvaluationMode::as_worn : optics::EvaluationMode::lensmeter;
-  position.eye = table.choice("eye", {"right", "left"}).value_or("right") == "right" ? optics::Eye::right
-                                                                                     : optics::Eye::left;
-  const Range angle{-57, 57};
-  std::vector<PoseSweep> sweeps{
-      {"rotation_centre_mm", &position.rotation_centre_mm, Range::positive(), {}},
-      {"vertex_distance_mm", &position.vertex_distance_mm, Range::positive(), {}},
-      {"panto_deg", &pose.panto_deg, angle, {}},
-      {"wrap_deg", &pose.wrap_deg, angle, {}},
-      {"object_distance_mm", &pose.options.object_distance_mm, Range::positive(), {}}};
-  std::erase_if(sweeps, [&](PoseSweep& s) {
-    auto sweep = read_sweep(table, s.key, s.range, false);
-    if (sweep) s.sweep = std::move(*sweep);
-    return !sweep;
-  });
-  std::size_t count = 1;
-  for (const PoseSweep& s : sweeps) count = case_product(table.file(), count, s.sweep.values.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t rest = i;  // the last key runs fastest
-    for (auto s = sweeps.rbegin(); s != sweeps.rend(); ++s) {
-      *s->value = s->sweep.values[rest % s->sweep.values.size()];
-      rest /= s->sweep.values.size();
-    }
-    poses.push_back(pose);
-  }
-}
-
-/// Enters the cases of `lenses` in every pose, at every wavelength and gaze.
+/// Makes the cases of a plan, in its order.
 class CaseList {
  public:
-  explicit CaseList(BatchPlan& plan) : plan_(plan) {}
-  void add(const LensCase& lens_case, const std::string& source) {
-    BatchCase entry{"", to_inputs(lens_case), source};
-    entry.key = sha256(entry.inputs);
-    if (keys_.insert(entry.key).second)
-      plan_.cases.push_back(std::move(entry));
-    else
-      ++plan_.repeated;
+  CaseList(BatchPlan& plan, const Plan& parts) : plan_(plan), parts_(parts) {}
+
+  /// Every material in every pose, at every wavelength and gaze.
+  void add_combinations(const PlanLenses& group) {
+    for_each_lens(group, [&](LensCase lens, const std::string& source, std::size_t) {
+      for (const CaseMaterial& material : group.materials) {
+        lens.material = material;
+        for (const auto& table : parts_.poses)
+          for (const PlanPose& pose : table)
+            for (const double wavelength_nm : parts_.wavelengths_nm) add(lens, source, pose, wavelength_nm);
+      }
+    });
+  }
+
+  /// Draw i is the i-th of everything. Files and tables are combined: each has the same draws.
+  void add_draws(const PlanLenses& group, std::size_t count) {
+    const auto add_draw = [&](LensCase lens, const std::string& source, std::size_t i) {
+      lens.material = group.materials[i];
+      for (const auto& table : parts_.poses) add(lens, source, table[i], parts_.wavelengths_nm[i]);
+    };
+    for_each_lens(group, [&](const LensCase& lens, const std::string& source, std::size_t at) {
+      if (lens.blank)
+        add_draw(lens, source, at);
+      else
+        for (std::size_t i = 0; i < count; ++i) add_draw(lens, source, i);
+    });
   }
 
  private:
+  template <typename Visit>
+  static void for_each_lens(const PlanLenses& group, Visit visit) {
+    LensCase lens;
+    lens.front_faces = group.front_faces;
+    lens.back_faces = group.back_faces;
+    for (std::size_t i = 0; i < group.files.size(); ++i) {
+      lens.file_sha256 = group.files[i].sha256;
+      visit(lens, group.files[i].path, i);
+    }
+    for (std::size_t i = 0; i < group.blanks.size(); ++i) {
+      lens.blank = group.blanks[i];
+      visit(lens, "", i);
+    }
+  }
+
+  void add(LensCase lens, const std::string& source, const PlanPose& pose, double wavelength_nm) {
+    lens.options.mode = pose.mode;
+    lens.options.position = pose.position;
+    lens.options.object_distance_mm = pose.object_distance_mm;
+    lens.panto_deg = pose.panto_deg;
+    lens.wrap_deg = pose.wrap_deg;
+    lens.options.wavelength_nm = wavelength_nm;
+    for (const CaseGaze& gaze : parts_.gazes) {
+      lens.gaze = gaze;
+      BatchCase entry{"", to_inputs(lens), source};
+      entry.key = sha256(entry.inputs);
+      if (keys_.insert(entry.key).second)
+        plan_.cases.push_back(std::move(entry));
+      else
+        ++plan_.repeated;
+    }
+  }
+
   BatchPlan& plan_;
+  const Plan& parts_;
   std::unordered_set<std::string> keys_;
 };
 
-}  // namespace
-
-std::vector<LensCase> read_plan_poses(const TomlTable& root) {
-  std::vector<LensCase> poses;
-  for (const toml::table* found : root.tables("poses"))
-    read_pose(TomlTable(*found, root.file(), "poses",
-                        {"mode", "eye", "rotation_centre_mm", "vertex_distance_mm", "panto_deg", "wrap_deg",
-                         "object_distance_mm"}),
-              poses);
-  if (poses.empty()) poses.emplace_back();
-  return poses;
+/// Throws where there would be none, or too many. Counted before any is made.
+void check_count(const Plan& parts, const PlanContext& context) {
+  const std::string& name = context.name;
+  std::size_t settings = parts.poses.size();
+  if (context.sample) {
+    settings = case_product(name, settings, context.sample->count);
+  } else {
+    settings = 0;
+    for (const auto& table : parts.poses) settings += table.size();
+    settings = case_product(name, settings, parts.wavelengths_nm.size());
+  }
+  settings = case_product(name, settings, parts.gazes.size());
+  std::size_t count = 0;
+  for (const PlanLenses& group : parts.lenses) {
+    std::size_t lenses = group.files.size();
+    if (!context.sample)
+      lenses = case_product(name, lenses + group.blanks.size(), group.materials.size());
+    else if (!group.blanks.empty())
+      lenses = 1;  // the draws are in `settings`
+    count += case_product(name, settings, lenses);
+    (void)case_product(name, count, 1);
+  }
+  if (count == 0)
+    throw Error(name, "plan", "has no case", "give [[lenses]] with files, or [[prescriptions]]");
 }
 
-std::vector<CaseGaze> read_plan_gaze(const TomlTable& root) {
-  std::vector<CaseGaze> result;
-  for (const toml::table* found : root.tables("gaze"))
-    result.push_back(
-        read_gaze(TomlTable(*found, root.file(), "gaze", {"max_deg", "step_deg", "directions_deg"})));
-  if (result.empty()) result.emplace_back();
-  return result;
+}  // namespace
+
+std::size_t case_product(const std::string& plan, std::size_t a, std::size_t b) {
+  if (b != 0 && a > kMostCases / b)
+    throw Error(plan, "plan", "has more than " + std::to_string(kMostCases) + " cases",
+                "leave out values, or divide it into several plans");
+  return a * b;
+}
+
+std::optional<PlanSample> sample_of_table(const TomlTable& table, const PlanContext& context,
+                                          std::string_view key, const std::string& path,
+                                          const std::string& what) {
+  auto own = read_plan_sample(table, key, path, what);
+  if (!own) return context.sample;
+  if (context.sample)
+    table.fail(key, "the sample of the whole plan draws the " + what + " already",
+               "leave out one of the two: the plan's draws everything together, this one enters a grid");
+  return own;
+}
+
+std::filesystem::path plan_path(const TomlTable& table, const PlanContext& context, std::string_view key) {
+  const auto text = table.text(key);
+  if (!text || text->empty()) table.fail(key, "expected the name of a file");
+  return (context.folder / *text).lexically_normal();
 }
 
 BatchPlan read_batch_plan_text(std::string_view text, const std::string& name,
                                const std::filesystem::path& folder) {
   const toml::table parsed = parse_toml(text, name);
-  const TomlTable root(parsed, name, "", {"lenses", "prescriptions", "poses", "gaze", "wavelengths_nm"});
-  const auto poses = read_plan_poses(root);
-  const auto gazes = read_plan_gaze(root);
-  const Sweep wavelengths = read_sweep(root, "wavelengths_nm", kWavelengths, false)
-                                .value_or(Sweep{{optics::EvaluationOptions{}.wavelength_nm}});
-  const auto lenses = read_plan_lenses(root, {name, folder});
-
-  // Counted before any is made.
-  std::size_t settings = case_product(name, poses.size(), gazes.size()), count = 0;
-  settings = case_product(name, settings, wavelengths.values.size());
-  for (const PlanLenses& group : lenses) {
-    count += case_product(name, settings, group.count());
-    (void)case_product(name, count, 1);
-  }
-  if (count == 0)
-    throw Error(name, "plan", "has no case", "give [[lenses]] with files, or [[prescriptions]]");
+  const TomlTable root(
+      parsed, name, "",
+      {"sample", "lenses", "prescriptions", "poses", "gaze", "wavelengths_nm", "wavelength_sample"});
+  const PlanContext context{name, folder, read_plan_sample(root, "sample", "sample", "cases")};
+  Plan parts;
+  parts.poses = read_plan_poses(root, context);
+  parts.gazes = read_plan_gaze(root);
+  parts.wavelengths_nm = read_plan_wavelengths(root, context);
+  parts.lenses = read_plan_lenses(root, context);
+  check_count(parts, context);
 
   BatchPlan plan{name, std::string(text), {}, 0};
-  CaseList list(plan);
-  const auto add_settings = [&](LensCase lens_case, const std::string& source) {
-    for (const LensCase& pose : poses)
-      for (const double wavelength : wavelengths.values)
-        for (const CaseGaze& gaze : gazes) {
-          lens_case.options = pose.options;
-          lens_case.panto_deg = pose.panto_deg;
-          lens_case.wrap_deg = pose.wrap_deg;
-          lens_case.options.wavelength_nm = wavelength;
-          lens_case.gaze = gaze;
-          list.add(lens_case, source);
-        }
-  };
-  for (const PlanLenses& group : lenses) {
-    LensCase lens_case;
-    for (const auto& file : group.files) {
-      lens_case.file_sha256 = file.sha256;
-      for (const CaseMaterial& material : group.materials) {
-        lens_case.material = material;
-        add_settings(lens_case, file.path);
-      }
-    }
-    for (const auto& blank : group.blanks) {
-      lens_case.blank = blank;
-      for (const CaseMaterial& material : group.materials) {
-        lens_case.material = material;
-        add_settings(lens_case, "");
-      }
-    }
-  }
+  CaseList list(plan, parts);
+  for (const PlanLenses& group : parts.lenses)
+    context.sample ? list.add_draws(group, context.sample->count) : list.add_combinations(group);
   return plan;
 }
 

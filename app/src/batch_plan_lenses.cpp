@@ -1,7 +1,7 @@
-// [[lenses]], and what lenses are made of.
+// [[lenses]] and [[prescriptions]]: which lenses.
 #include <glob.h>
 
-#include <map>
+#include <algorithm>
 
 #include "app/src/batch_plan_parts.h"
 #include "app/src/file_hash.h"
@@ -9,31 +9,6 @@
 
 namespace catoptra::app {
 namespace {
-
-CaseMaterial material_from(const TomlTable& table, std::string_view key, const toml::node& node) {
-  CaseMaterial material;
-  if (node.is_string()) {
-    material.name = *node.value<std::string>();
-  } else if (node.is_number()) {
-    material.nd = *node.value<double>();
-  } else if (const toml::table* found = node.as_table()) {
-    const TomlTable given(*found, table.file(), std::string(key), {"nd", "vd"});
-    material.nd = given.number("nd");
-    material.vd = given.number("vd");
-    if (!material.nd || !material.vd)
-      table.fail(key, "a material as a table has nd and vd", "{ nd = 1.6, vd = 41 }");
-  } else {
-    table.fail(key, "expected a material", "a name such as \"CR-39\", an index, or { nd = 1.6, vd = 41 }");
-  }
-  try {
-    if (!material.name.empty()) material.name = optics::built_in_media().find(material.name).name;
-    (void)material.medium();
-  } catch (const Error& error) {
-    table.fail(key, error.entity().empty() ? error.reason() : error.entity() + " " + error.reason(),
-               error.hint());
-  }
-  return material;
-}
 
 /// `text` with what glob() would understand taken literally.
 std::string escaped(const std::string& text) {
@@ -72,9 +47,13 @@ std::vector<std::string> matching_files(const TomlTable& table, const PlanContex
 }
 
 PlanLenses read_files(const toml::table& found, const PlanContext& context) {
-  const TomlTable table(found, context.name, "lenses", {"files", "material", "materials"});
+  std::vector<std::string> keys{"files", "front_faces", "back_faces"};
+  keys.insert(keys.end(), std::begin(kMaterialKeys), std::end(kMaterialKeys));
+  const TomlTable table(found, context.name, "lenses", keys);
   PlanLenses lenses;
-  lenses.materials = read_materials(table);
+  lenses.materials = read_materials(table, context, "lenses");
+  lenses.front_faces = read_face_selectors(table, "front_faces");
+  lenses.back_faces = read_face_selectors(table, "back_faces");
   const toml::node* node = table.node("files");
   if (!node) table.fail_missing("files", "for example [\"lenses/*.step\"]");
   const toml::array* patterns = node->as_array();
@@ -94,25 +73,6 @@ PlanLenses read_files(const toml::table& found, const PlanContext& context) {
 
 }  // namespace
 
-std::size_t case_product(const std::string& plan, std::size_t a, std::size_t b) {
-  if (b != 0 && a > kMostCases / b)
-    throw Error(plan, "plan", "has more than " + std::to_string(kMostCases) + " cases",
-                "leave out values, or divide it into several plans");
-  return a * b;
-}
-
-std::vector<CaseMaterial> read_materials(const TomlTable& table) {
-  if (table.has("material") && table.has("materials")) table.fail("material", "material excludes materials");
-  if (const toml::node* one = table.node("material")) return {material_from(table, "material", *one)};
-  const toml::node* node = table.node("materials");
-  if (!node) table.fail_missing("material", "a name such as \"CR-39\", an index, or { nd = 1.6, vd = 41 }");
-  const toml::array* several = node->as_array();
-  if (!several || several->empty()) table.fail("materials", "expected a list of materials");
-  std::vector<CaseMaterial> materials;
-  for (const toml::node& one : *several) materials.push_back(material_from(table, "materials", one));
-  return materials;
-}
-
 std::vector<PlanLenses> read_plan_lenses(const TomlTable& root, const PlanContext& context) {
   std::vector<PlanLenses> result;
   for (const toml::table* found : root.tables("lenses")) result.push_back(read_files(*found, context));
@@ -120,8 +80,8 @@ std::vector<PlanLenses> read_plan_lenses(const TomlTable& root, const PlanContex
   for (const toml::table* found : root.tables("prescriptions")) {
     const TomlTable table(*found, context.name, "prescriptions", keys);
     PlanLenses lenses;
-    lenses.materials = read_materials(table);
-    lenses.blanks = read_blanks(table);
+    lenses.materials = read_materials(table, context, "prescriptions");
+    lenses.blanks = read_blanks(table, context);
     result.push_back(std::move(lenses));
   }
   return result;

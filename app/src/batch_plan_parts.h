@@ -1,4 +1,4 @@
-// The tables of a batch plan: what each gives to the cross product.
+// The tables of a batch plan: what each gives to the cases.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/src/batch_lens_case.h"
+#include "app/src/batch_sweep.h"
 #include "app/src/toml_table.h"
 
 namespace catoptra::app {
@@ -19,6 +20,9 @@ inline constexpr std::size_t kMostDirections = 100000;
 struct PlanContext {
   std::string name;              ///< the plan, as messages call it
   std::filesystem::path folder;  ///< where relative paths start
+  /// Of the whole plan: every list below then has one value per draw, which belong together. Else each list
+  /// is a grid or a sample of its own, and cases are all their combinations.
+  std::optional<PlanSample> sample;
 };
 
 /// Lenses that share their materials: files or orders, never both.
@@ -27,30 +31,54 @@ struct PlanLenses {
     std::string path, sha256;  ///< absolute
   };
   std::vector<File> files;
-  std::vector<cad_import::LensBlank> blanks;
-  std::vector<CaseMaterial> materials;
+  std::vector<FaceSelector> front_faces, back_faces;  ///< of each file; empty: recognised
+  std::vector<cad_import::LensBlank> blanks;          ///< as PlanContext::sample says
+  std::vector<CaseMaterial> materials;                ///< as PlanContext::sample says
+};
 
-  [[nodiscard]] std::size_t count() const { return (files.size() + blanks.size()) * materials.size(); }
+/// How a lens is held.
+struct PlanPose {
+  optics::EvaluationMode mode = optics::EvaluationMode::lensmeter;
+  optics::WearingPosition position;  ///< but for its two angles, which are
+  double panto_deg = 0, wrap_deg = 0;
+  double object_distance_mm = optics::EvaluationOptions{}.object_distance_mm;
 };
 
 /// All [[lenses]] and [[prescriptions]], in this order.
 [[nodiscard]] std::vector<PlanLenses> read_plan_lenses(const TomlTable& root, const PlanContext& context);
 
-/// How lenses are held: mode, position and angles of a case. One pose of the lensmeter where there is no
-/// [[poses]].
-[[nodiscard]] std::vector<LensCase> read_plan_poses(const TomlTable& root);
+/// The poses of each [[poses]], as PlanContext::sample says; the lensmeter where there is none.
+[[nodiscard]] std::vector<std::vector<PlanPose>> read_plan_poses(const TomlTable& root,
+                                                                 const PlanContext& context);
+
+/// `wavelengths_nm`, as PlanContext::sample says; d where it is absent.
+[[nodiscard]] std::vector<double> read_plan_wavelengths(const TomlTable& root, const PlanContext& context);
 
 /// [[gaze]]; a grid to 30 degrees every 10 where there is none.
 [[nodiscard]] std::vector<CaseGaze> read_plan_gaze(const TomlTable& root);
 
+/// The keys of a table that read_materials reads.
+inline constexpr std::string_view kMaterialKeys[] = {"material", "materials", "material_sample", "catalogue"};
+
 /// `material` or `materials`, required. Throws where a material is unknown.
-[[nodiscard]] std::vector<CaseMaterial> read_materials(const TomlTable& table);
+[[nodiscard]] std::vector<CaseMaterial> read_materials(const TomlTable& table, const PlanContext& context,
+                                                       const std::string& path);
 
 /// Prescriptions of one table, as a grid or a sample.
-[[nodiscard]] std::vector<cad_import::LensBlank> read_blanks(const TomlTable& table);
+[[nodiscard]] std::vector<cad_import::LensBlank> read_blanks(const TomlTable& table,
+                                                             const PlanContext& context);
 
 /// The keys that read_blanks reads.
 [[nodiscard]] std::vector<std::string> blank_keys();
+
+/// The sample that draws a table: its own under `key` or the plan's, which exclude each other.
+[[nodiscard]] std::optional<PlanSample> sample_of_table(const TomlTable& table, const PlanContext& context,
+                                                        std::string_view key, const std::string& path,
+                                                        const std::string& what);
+
+/// A file that a plan names, absolute. Throws where `key` is no name.
+[[nodiscard]] std::filesystem::path plan_path(const TomlTable& table, const PlanContext& context,
+                                              std::string_view key);
 
 /// Throws where a * b would be more cases than a plan may have; returns the product.
 [[nodiscard]] std::size_t case_product(const std::string& plan, std::size_t a, std::size_t b);

@@ -35,7 +35,8 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
 
   void push(BatchResult result) { queue_.push(std::optional(std::move(result))); }
-  [[nodiscard]] bool failed() const { return failed_; }
+  /// Nothing more is wanted: storing has failed, or somebody asked to stop.
+  [[nodiscard]] bool closed() const { return failed_ || (options_.stop && *options_.stop); }
 
   /// Waits until all is stored. Rethrows what went wrong with it.
   BatchProgress finish() {
@@ -103,7 +104,7 @@ void run_group(const Group& group, const CaseEvaluator& evaluator, Writer& write
   tbb::parallel_for(
       std::size_t(0), group.size(),
       [&](std::size_t i) {
-        if (!writer.failed()) writer.push(evaluate_on(*subject, *group[i]));
+        if (!writer.closed()) writer.push(evaluate_on(*subject, *group[i]));
       },
       tbb::simple_partitioner());
 }
@@ -123,7 +124,7 @@ BatchProgress run_cases(const std::vector<BatchCase>& cases, const CaseEvaluator
     tbb::parallel_for(
         std::size_t(0), groups.size(),
         [&](std::size_t i) {
-          if (writer.failed()) return;
+          if (writer.closed()) return;
           tbb::this_task_arena::isolate([&] { run_group(groups[i], evaluator, writer); });
         },
         tbb::simple_partitioner());

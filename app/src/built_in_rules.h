@@ -7,7 +7,7 @@
 namespace catoptra::app {
 
 struct BuiltInRule {
-  std::string_view id;  ///< the file's name without suffix, which is its `id`
+  std::string_view id;  ///< the file's name without suffix: its `id` in lower case
   std::string_view text;
 };
 

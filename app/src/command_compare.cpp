@@ -55,7 +55,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   const render::RenderResult result = session.render(mode, frame_options);
   ModeResult compared{mode,
                       render::compare(reference, result.frame, session.scene()),
-                      retraced_fractions(session.scene(), mode, result.stats),
+                      retraced_fractions(session.scene(), drawn_mode(mode, result), result.stats),
                       time_mode(session, mode, options.frames),
                       {}};
   const std::string name(render::mode_name(mode));
@@ -63,10 +63,12 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
   write_picture(result.frame, folder / (name + ".png"), false);
   write_picture(error_picture(reference, render::error_map_arcmin(reference, result.frame)),
                 folder / ("error_" + name + ".png"), false);
-  compared.json = {{"optics", optics_json(session.scene(), mode, result.stats, &compared.comparison.optics)},
+  compared.json = {{"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats,
+                                          &compared.comparison.optics)},
                    {"maps", maps_json(result.stats)},
                    {"image", image_json(compared.comparison.image)},
                    {"time_ms", time_json(compared.timing)}};
+  if (result.choice) compared.json["choice"] = choice_json(*result.choice);
   if (!result.warnings.empty()) compared.json["warnings"] = result.warnings;
   return compared;
 }

@@ -140,9 +140,7 @@ glm::ivec2 parse_resolution(const std::string& text) {
 
 render::Mode parse_mode(const std::string& name) {
   if (const auto mode = render::mode_from_name(name)) return *mode;
-  const std::vector<std::string> known{"pvrr", "hybrid", "exact", "raytrace", "cubemap"};
-  if (name == "auto")
-    throw UsageError("mode '" + name + "' is not in this version", "it has " + list_of_names(known));
+  const std::vector<std::string> known{"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"};
   throw UsageError("unknown mode '" + name + "'", hint_for_unknown(name, known));
 }
 

@@ -30,7 +30,7 @@ RuleFile rule_called(const std::string& name) {
   try {
     return find_rule(name, mirror_rule_words());
   } catch (const UnknownRule& error) {
-    throw UsageError(error.reason(), error.hint());
+    throw UsageError("--rule: " + error.reason(), error.hint());
   }
 }
 

@@ -50,16 +50,18 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
                                    const render::RenderResult& result) {
   nlohmann::ordered_json warnings = session.scene().warnings;
   for (const std::string& warning : result.warnings) warnings.push_back(warning);
-  return {{"scene", session.scene().file},
-          {"resolution", {session.frame.width, session.frame.height}},
-          {"mode", render::mode_name(mode)},
-          {"samples", options.samples},
-          {"optics", optics_json(session.scene(), mode, result.stats, nullptr)},
-          {"maps", maps_json(result.stats)},
-          {"rays", result.stats.rays},
-          {"time_ms", result.stats.time_ms},
-          {"warnings", warnings},
-          {"versions", versions_json()}};
+  nlohmann::ordered_json json{{"scene", session.scene().file},
+                              {"resolution", {session.frame.width, session.frame.height}},
+                              {"mode", render::mode_name(mode)}};
+  if (result.choice) json["choice"] = choice_json(*result.choice);
+  json.update({{"samples", options.samples},
+               {"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats, nullptr)},
+               {"maps", maps_json(result.stats)},
+               {"rays", result.stats.rays},
+               {"time_ms", result.stats.time_ms},
+               {"warnings", warnings},
+               {"versions", versions_json()}});
+  return json;
 }
 
 struct ReferenceCheck {
@@ -159,7 +161,7 @@ Command add_render_command(CLI::App& root, CommonOptions& common) {
       ->required()
       ->option_text("IMAGE");
   app->add_option("--mode", options->mode,
-                  "pvrr, hybrid, exact, raytrace or cubemap, in place of the scene's")
+                  "pvrr, hybrid, exact, raytrace, cubemap or auto, in place of the scene's")
       ->option_text("MODE");
   app->add_option("--samples", options->samples, "Samples per pixel")
       ->check(CLI::Range(1, 4096))

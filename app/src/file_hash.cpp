@@ -2,6 +2,7 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <memory>
@@ -56,6 +57,16 @@ std::string sha256_of_file(const std::filesystem::path& file) {
     digest.add({block.data(), static_cast<std::size_t>(stream.gcount())});
   if (!stream.eof()) throw Error(file.string(), "", "cannot be read", "does it exist and may you read it?");
   return digest.hexadecimal();
+}
+
+std::vector<InputFile> input_files(std::span<const std::filesystem::path> files) {
+  std::vector<InputFile> inputs;
+  for (const std::filesystem::path& file : files) {
+    const auto same = [&](const InputFile& input) { return input.file == file.string(); };
+    if (!file.empty() && std::none_of(inputs.begin(), inputs.end(), same))
+      inputs.push_back({file.string(), sha256_of_file(file)});
+  }
+  return inputs;
 }
 
 }  // namespace catoptra::app

@@ -7,6 +7,12 @@
 #include "app/src/report.h"
 
 namespace catoptra::app {
+namespace {
+
+/// Mode automatic tries each mode in at most a few frames before it settles.
+constexpr int kMostWarmUpFrames = 12;
+
+}  // namespace
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -23,7 +29,10 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
                         const MoveScene& move) {
   using Clock = std::chrono::steady_clock;
   if (move) move(0, renderer, camera);
-  (void)renderer.render(mode, camera, options);
+  for (int i = 0; i < kMostWarmUpFrames; ++i) {
+    const render::RenderResult result = renderer.render(mode, camera, options);
+    if (!result.choice || result.choice->settled) break;
+  }
   FrameTiming timing;
   timing.frames = frames;
   for (int i = 0; i < frames; ++i) {
@@ -35,6 +44,7 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
     for (const auto& [name, ms] : result.stats.time_ms) timing.pass_ms[name].push_back(ms);
     timing.rays_per_frame = result.stats.rays;
     timing.maps = maps_json(result.stats);
+    timing.choice = result.choice;
   }
   progress.clear();
   return timing;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct FrameTiming {
   std::vector<double> frame_ms;                        ///< wall clock of Renderer::render, one per frame
   std::map<std::string, std::vector<double>> pass_ms;  ///< each entry of FrameStats::time_ms, one per frame
   std::size_t rays_per_frame = 0;
-  nlohmann::ordered_json maps;  ///< maps_json() of the last frame
+  nlohmann::ordered_json maps;               ///< maps_json() of the last frame
+  std::optional<render::ModeChoice> choice;  ///< mode automatic: of the last frame
 
   [[nodiscard]] double median_ms() const;
 };
@@ -25,9 +27,9 @@ struct FrameTiming {
 /// Middle value (mean of the two middle ones). `values` must not be empty.
 [[nodiscard]] double median(std::vector<double> values);
 
-/// Renders one frame to warm up (shader compilation, first touch of memory), then `frames` that count.
-/// `move`, if any, is called before each of them, with a number that counts up, and may change camera and
-/// optics; its time does not count.
+/// Renders one frame to warm up (shader compilation, first touch of memory; mode automatic: some, until it
+/// has settled on a mode), then `frames` that count. `move`, if any, is called before each of them, with a
+/// number that counts up, and may change camera and optics; its time does not count.
 using MoveScene = std::function<void(int frame, render::Renderer& renderer, render::Camera& camera)>;
 [[nodiscard]] FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::Camera camera,
                                       const render::FrameOptions& options, int frames, Progress& progress,

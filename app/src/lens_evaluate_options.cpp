@@ -195,12 +195,12 @@ void set_rule(const LensEvaluateOptions& options, LensReportOptions& report) {
     if (options.strict) throw UsageError("--strict needs a --rule");
     return;
   }
-  report.order = order_of(options);
-  try {
+  try {  // a name that is no rule is what there is to mend first
     report.rule = find_rule(options.rule, lens_rule_words());
   } catch (const UnknownRule& error) {
     throw UsageError("--rule: " + error.reason(), error.hint());
   }
+  report.order = order_of(options);
 }
 
 }  // namespace

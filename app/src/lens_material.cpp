@@ -56,13 +56,15 @@ void check_indices(const TomlTable& lens, std::string_view key, const Medium& me
 
 }  // namespace
 
+std::vector<Medium> glasses_of_file(const std::filesystem::path& file) {
+  if (file.extension() == ".yml" || file.extension() == ".yaml")
+    return {optics::read_refractive_index_yml(file)};
+  return optics::read_agf(file);
+}
+
 optics::MediumCatalogue lens_media(const std::filesystem::path& file) {
   optics::MediumCatalogue media = optics::built_in_media();
-  if (file.empty()) return media;
-  if (file.extension() == ".yml" || file.extension() == ".yaml")
-    media.add(std::vector<Medium>{optics::read_refractive_index_yml(file)});
-  else
-    media.add(optics::read_agf(file));
+  if (!file.empty()) media.add(glasses_of_file(file));
   return media;
 }
 

@@ -4,11 +4,16 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "app/src/toml_table.h"
 #include "optics/medium.h"
 
 namespace catoptra::app {
+
+/// The glasses of a catalogue (.agf), or the one of a refractiveindex.info file (.yml). Throws
+/// catoptra::Error where the file cannot be read.
+[[nodiscard]] std::vector<optics::Medium> glasses_of_file(const std::filesystem::path& file);
 
 /// The built-in media and, where `file` is not empty, those of a glass catalogue (.agf) or of one material of
 /// the refractiveindex.info database (.yml). Throws catoptra::Error where the file cannot be read.

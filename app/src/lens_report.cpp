@@ -136,6 +136,10 @@ LensReport lens_report(const optics::Optic& lens, const optics::LensFrame& frame
 LensReport lens_report(const LensSource& source, const LensReportOptions& options) {
   LensReport report = lens_report(source.lens, source.frame, options);
   report.inputs = source.inputs;
+  if (options.rule && !options.rule->path.empty()) {
+    const auto rule = input_files({{options.rule->path}});
+    report.inputs.insert(report.inputs.end(), rule.begin(), rule.end());
+  }
   report.warnings.insert(report.warnings.begin(), source.warnings.begin(), source.warnings.end());
   return report;
 }

@@ -1,7 +1,7 @@
 // The JSON form of lens_report.h.
-#include <cmath>
 #include <numbers>
 
+#include "app/src/json_values.h"
 #include "app/src/lens_report_writers.h"
 #include "app/src/report.h"
 
@@ -28,8 +28,8 @@ ordered_json reference_json(const LensReport& report) {
           {"prism_v", report.reference_prism.y}};
 }
 
-/// Every key is there at every point.
-ordered_json point_json(const LensReportPoint& point) {
+/// Every key is there at every point. Distortion is defined along lines of sight alone.
+ordered_json point_json(const LensReportPoint& point, bool worn) {
   const optics::LensPoint& m = point.measured;
   const bool met = m.end != LensPathEnd::missed, passed = m.end == LensPathEnd::passed;
   const auto where = [](bool known, double value) {
@@ -53,7 +53,7 @@ ordered_json point_json(const LensReportPoint& point) {
           {"base_out", where(passed, point.base_out)},
           {"object_h_deg", where(passed, m.object_rad.x * kDegrees)},
           {"object_v_deg", where(passed, m.object_rad.y * kDegrees)},
-          {"distortion", where(passed, m.distortion)},
+          {"distortion", where(passed && worn, m.distortion)},
           {"tca_d", where(passed, m.transverse_colour)}};
 }
 
@@ -79,9 +79,7 @@ ordered_json position_json(const optics::EvaluationOptions& options) {
           {"panto_deg", p.pantoscopic_rad * kDegrees},
           {"wrap_deg", p.wrap_rad * kDegrees},
           {"eye", p.eye == optics::Eye::right ? "right" : "left"},
-          {"object_distance_mm", std::isfinite(options.object_distance_mm)
-                                     ? ordered_json(options.object_distance_mm)
-                                     : ordered_json(nullptr)}};
+          {"object_distance_mm", number_or_null(options.object_distance_mm)}};
 }
 
 ordered_json limit_json(const LensLimit& limit) {
@@ -129,10 +127,11 @@ void add_verdict(const LensReport& report, ordered_json& json) {
 
 ordered_json lens_report_json(const LensReport& report) {
   const optics::EvaluationOptions& options = report.options.evaluation;
+  const bool worn = options.mode == optics::EvaluationMode::as_worn;
   ordered_json json{{"lens", report.lens},
                     {"material", report.material},
                     {"wavelength_nm", options.wavelength_nm},
-                    {"mode", options.mode == optics::EvaluationMode::as_worn ? "as-worn" : "lensmeter"},
+                    {"mode", worn ? "as-worn" : "lensmeter"},
                     {"index", report.index},
                     {"index_around", report.index_around},
                     {"dispersion", report.dispersion},
@@ -146,13 +145,10 @@ ordered_json lens_report_json(const LensReport& report) {
                     {"spectacle_magnification", report.spectacle_magnification}};
   if (report.addition) json["addition"] = addition_json(*report.addition);
   ordered_json points = ordered_json::array();
-  for (const LensReportPoint& point : report.points) points.push_back(point_json(point));
+  for (const LensReportPoint& point : report.points) points.push_back(point_json(point, worn));
   json["points"] = std::move(points);
   add_verdict(report, json);
-  ordered_json inputs = ordered_json::array();
-  for (const InputFile& input : report.inputs)
-    inputs.push_back({{"file", input.file}, {"sha256", input.sha256}});
-  json["inputs"] = std::move(inputs);
+  json["inputs"] = inputs_json(report.inputs);
   json["warnings"] = report.warnings;
   json["versions"] = versions_json();
   return json;

@@ -103,6 +103,10 @@ const Column kPlace[] = {
 const Column kPower[] = {{"sphere", "D", 8, 2, [](const LensReportPoint& p) { return p.power.sphere_d; }},
                          {"cyl", "D", 7, 2, [](const LensReportPoint& p) { return p.power.cylinder_d; }}};
 
+double distortion_percent(const LensReportPoint& point) {
+  return 100 * point.measured.distortion;
+}
+
 const Column kRest[] = {
     {"mean", "error D", 8, 2, [](const LensReportPoint& p) { return p.measured.mean_power_error_d; }},
     {"oblique", "ast. D", 8, 2, [](const LensReportPoint& p) { return p.measured.oblique_astigmatism_d; }},
@@ -112,7 +116,7 @@ const Column kRest[] = {
     {"", "v", 7, 2, [](const LensReportPoint& p) { return p.measured.prism.y; }},
     {"object", "h deg", 8, 1, [](const LensReportPoint& p) { return p.measured.object_rad.x * kDegrees; }},
     {"", "v", 6, 1, [](const LensReportPoint& p) { return p.measured.object_rad.y * kDegrees; }},
-    {"distort.", "%", 9, 2, [](const LensReportPoint& p) { return 100 * p.measured.distortion; }},
+    {"distort.", "%", 9, 2, distortion_percent},
     {"colour", "pd F-C", 8, 3, [](const LensReportPoint& p) { return p.measured.transverse_colour; }}};
 
 constexpr int kAxisWidth = 7;
@@ -136,7 +140,13 @@ std::string cell_text(const Column& column, const LensReportPoint& point, bool k
   return format("%*.*f", column.width, column.decimals, shown(column.value(point), column.decimals));
 }
 
-std::string row_text(const LensReportPoint& point) {
+/// Distortion compares lines of sight: a focimeter has none.
+bool defined(const Column& column, const LensReport& report) {
+  return column.value != distortion_percent ||
+         report.options.evaluation.mode == optics::EvaluationMode::as_worn;
+}
+
+std::string row_text(const LensReport& report, const LensReportPoint& point) {
   const LensPathEnd end = point.measured.end;
   const bool met = end != LensPathEnd::missed;
   std::string text;
@@ -147,7 +157,7 @@ std::string row_text(const LensReportPoint& point) {
   if (end == LensPathEnd::rim) return text + "  through the rim\n";
   for (const Column& column : kPower) text += cell_text(column, point);
   text += format("%*s", kAxisWidth, axis_text(point.power).c_str());
-  for (const Column& column : kRest) text += cell_text(column, point);
+  for (const Column& column : kRest) text += cell_text(column, point, defined(column, report));
   return text + "\n";
 }
 
@@ -181,7 +191,7 @@ std::string table_text(const LensReport& report) {
   std::string text = "\n";
   text += header_text();
   for (const LensReportPoint& point : report.points)
-    if (all || on_middle_lines(point)) text += row_text(point);
+    if (all || on_middle_lines(point)) text += row_text(report, point);
   if (!all) text += "  (the middle row and column of the map; --csv and --json have all points)\n";
   return text + extremes_text(report);
 }

@@ -110,8 +110,9 @@ LensSource lens_of_scene(const std::filesystem::path& file, const LensSourceOpti
                      scene.scene.optics.begin();
   const OpticSource& origin = scene.optic_sources.at(std::size_t(index));
   set_frame(source, options, origin.placement, scene.scene.file);
-  if (file != "-") source.inputs.push_back({file.string(), sha256_of_file(file)});
-  for (const auto& cad : origin.files) source.inputs.push_back({cad.string(), sha256_of_file(cad)});
+  std::vector<std::filesystem::path> files{scene.path};
+  files.insert(files.end(), origin.files.begin(), origin.files.end());
+  source.inputs = input_files(files);
   return source;
 }
 

@@ -9,17 +9,12 @@
 #include <vector>
 
 #include "app/scene_file.h"
+#include "app/src/file_hash.h"
 #include "app/src/mirror_faces.h"
 #include "optics/lens_evaluation.h"
 #include "optics/optic.h"
 
 namespace catoptra::app {
-
-/// A file that a result comes from.
-struct InputFile {
-  std::string file;  ///< as the user named it
-  std::string sha256;
-};
 
 struct LensSource {
   optics::Optic lens;

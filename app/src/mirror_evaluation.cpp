@@ -129,6 +129,16 @@ glm::dvec3 rotate_deg_of(const glm::dmat3& r) {
   return glm::degrees(glm::dvec3(std::atan2(r[1][2], r[2][2]), y, std::atan2(r[0][1], r[0][0])));
 }
 
+std::vector<InputFile> inputs_of(const SceneFile& scene, std::size_t optic, const MirrorVehicle& vehicle,
+                                 const std::optional<RuleFile>& rule) {
+  std::vector<std::filesystem::path> files{scene.path};
+  const auto add = [&](const auto& more) { files.insert(files.end(), more.begin(), more.end()); };
+  add(scene.optic_sources[optic].files);
+  add(vehicle.files);
+  if (rule) files.push_back(rule->path);
+  return input_files(files);
+}
+
 AimSummary aim_mirror(const SceneFile& scene, std::size_t optic, const optics::MirrorGlass& glass,
                       const optics::AimOptions& options, const std::vector<optics::GroundPolygon>& zone,
                       const optics::SightOptions& sight) {
@@ -210,6 +220,7 @@ MirrorEvaluation evaluate_mirror(const SceneFile& scene, const MirrorEvaluationO
   const MirrorVehicle vehicle = make_mirror_vehicle(scene, optic, glass, options);
   e.vehicle = vehicle.summary;
   e.notes.insert(e.notes.end(), vehicle.notes.begin(), vehicle.notes.end());
+  e.inputs = inputs_of(scene, optic, vehicle, options.rule);
   if (options.rule) {
     e.rule_id = options.rule->id;
     e.rule_title = options.rule->title;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/scene_file.h"
+#include "app/src/file_hash.h"
 #include "app/src/mirror_rules.h"
 #include "optics/mirror_aim.h"
 #include "optics/mirror_evaluation.h"
@@ -35,6 +36,13 @@ struct MirrorClause {
   std::string source, note;
 };
 
+/// Where the side plane on the mirror's side, outboard of which zones lie, was taken from.
+enum class SidePlane {
+  scene,    ///< evaluation.left_side or right_side
+  vehicle,  ///< the outermost place of the named vehicle's meshes behind the mirror
+  mirror,   ///< the mirror's inner end: an assumption, where the scene tells neither
+};
+
 /// The vehicle as the evaluation took it, ground coordinates (behind, left) in mm.
 struct VehicleSummary {
   optics::RoadFrame road;
@@ -42,6 +50,7 @@ struct VehicleSummary {
   bool mirror_left = true;
   std::optional<bool> driver_left;
   std::optional<double> side_left_mm;  ///< of the side plane on the mirror's side
+  SidePlane side_from = SidePlane::scene;
   std::optional<double> median_left_mm;
   double far_mm = 0;
   std::vector<std::string> obstructions;  ///< names of the surroundings that count as vehicle
@@ -81,6 +90,8 @@ struct MirrorEvaluation {
   std::optional<double> road_begins_mm;  ///< of the eyes' midpoint, on the median or straight behind it
   std::optional<AimSummary> aim;
   std::vector<MirrorClause> clauses;
+  std::vector<InputFile>
+      inputs;  ///< the scene's file, the mirror's, the vehicle's, and a rule's of one's own
   std::vector<std::string> notes;  ///< assumptions and shortcomings, one sentence each
 
   /// Whether a part of the glass is aspheric. Below a share of 0.98: what is less is the width of a cell of
@@ -90,8 +101,9 @@ struct MirrorEvaluation {
   [[nodiscard]] bool rests_on_unverified() const;  ///< some clause's limit is unverified
 };
 
-/// Throws catoptra::Error: no such mirror, a rule whose planes the scene does not tell, a mirror that does
-/// not face the eye. The result does not depend on the number of threads.
+/// Throws catoptra::Error: no such mirror, a rule that refers to the median plane where the scene does not
+/// tell it, a mirror that does not face the eye. A side plane that the scene does not tell is assumed, with a
+/// note and VehicleSummary::side_from. The result does not depend on the number of threads.
 [[nodiscard]] MirrorEvaluation evaluate_mirror(const SceneFile& scene,
                                                const MirrorEvaluationOptions& options);
 

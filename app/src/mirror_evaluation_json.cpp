@@ -1,7 +1,7 @@
 // The JSON form of mirror_evaluation.h.
-#include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "app/src/json_values.h"
 #include "app/src/mirror_evaluation_writers.h"
 #include "app/src/report.h"
 
@@ -9,15 +9,6 @@ namespace catoptra::app {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// JSON has no infinity: null stands for it (a plane's radius).
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json number(const std::optional<double>& value) {
-  return value ? number(*value) : ordered_json(nullptr);
-}
 
 ordered_json array(const glm::dvec2& v) {
   return {v.x, v.y};
@@ -35,10 +26,10 @@ ordered_json polygon(const std::vector<glm::dvec2>& corners) {
 ordered_json readings_json(const MirrorEvaluation& e) {
   ordered_json places = ordered_json::array();
   for (const optics::RadiusReading& r : e.readings.readings) {
-    ordered_json place{{"xy_mm", array(r.xy_mm)}, {"along_mm", number(r.along_mm)}};
+    ordered_json place{{"xy_mm", array(r.xy_mm)}, {"along_mm", number_or_null(r.along_mm)}};
     if (!e.ten_readings) {
-      place["across_mm"] = number(r.across_mm);
-      place["mean_mm"] = number(r.mean_mm());
+      place["across_mm"] = number_or_null(r.across_mm);
+      place["mean_mm"] = number_or_null(r.mean_mm());
     }
     places.push_back(std::move(place));
   }
@@ -46,8 +37,8 @@ ordered_json readings_json(const MirrorEvaluation& e) {
           {"arc", e.ten_readings ? ordered_json(nullptr)
                                  : ordered_json(e.readings.along_upright ? "upright" : "level")},
           {"base_mm", e.readings.base_mm},
-          {"worst_difference", number(e.readings.worst_difference)},
-          {"worst_deviation", number(e.readings.worst_deviation)},
+          {"worst_difference", number_or_null(e.readings.worst_difference)},
+          {"worst_deviation", number_or_null(e.readings.worst_deviation)},
           {"places", std::move(places)}};
 }
 
@@ -71,8 +62,8 @@ ordered_json map_json(const MirrorEvaluation& e) {
   for (std::size_t i = 0; i < e.map.points.size(); ++i) {
     const optics::GlassPoint& p = e.map.points[i];
     ordered_json point{{"xy_mm", array(p.xy_mm)},
-                       {"radius1_mm", number(optics::radius_of_mm(p.curvatures.k1))},
-                       {"radius2_mm", number(optics::radius_of_mm(p.curvatures.k2))},
+                       {"radius1_mm", number_or_null(optics::radius_of_mm(p.curvatures.k1))},
+                       {"radius2_mm", number_or_null(optics::radius_of_mm(p.curvatures.k2))},
                        {"spherical", optics::in_spherical_part(e.map, p)}};
     if (e.views[i]) {
       point["tangential"] = e.views[i]->tangential;
@@ -109,12 +100,24 @@ ordered_json field_json(const MirrorEvaluation& e) {
                       {"horizon_shown", e.horizon_seen},
                       {"horizon_angle_deg", e.horizon ? ordered_json(glm::degrees(e.horizon->angle_rad()))
                                                       : ordered_json(nullptr)},
-                      {"road_begins_mm", number(e.road_begins_mm)},
+                      {"road_begins_mm", number_or_null(e.road_begins_mm)},
                       {"zone_mm", std::move(zone)},
                       {"margins", std::move(margins)},
                       {"outlines_mm", std::move(outlines)}};
   if (e.spherical_field) result["spherical_part_covered_m2"] = e.spherical_field->covered_m2;
   return result;
+}
+
+const char* side_plane_name(SidePlane from) {
+  switch (from) {
+    case SidePlane::scene:
+      return "scene";
+    case SidePlane::vehicle:
+      return "vehicle";
+    case SidePlane::mirror:
+      break;
+  }
+  return "mirror";
 }
 
 ordered_json vehicle_json(const VehicleSummary& v) {
@@ -127,8 +130,9 @@ ordered_json vehicle_json(const VehicleSummary& v) {
           {"mirror_side", v.mirror_left ? "left" : "right"},
           {"driver_side",
            v.driver_left ? ordered_json(*v.driver_left ? "left" : "right") : ordered_json(nullptr)},
-          {"side_left_mm", number(v.side_left_mm)},
-          {"median_left_mm", number(v.median_left_mm)},
+          {"side_left_mm", number_or_null(v.side_left_mm)},
+          {"side_plane_from", side_plane_name(v.side_from)},
+          {"median_left_mm", number_or_null(v.median_left_mm)},
           {"obstructions", v.obstructions}};
 }
 
@@ -140,7 +144,7 @@ ordered_json aim_json(const AimSummary& a) {
           {"at_pitch_stop", a.aim.at_pitch_stop},
           {"coverage_before", a.aim.coverage_before},
           {"coverage", a.aim.coverage},
-          {"inside_glass_mm", number(a.aim.inside_mm)},
+          {"inside_glass_mm", number_or_null(a.aim.inside_mm)},
           {"pivot_mm", array(a.aim.pose.pivot_mm)},
           {"rotate_deg", array(a.rotate_deg)},
           {"translate", array(a.translate)}};
@@ -151,8 +155,8 @@ ordered_json clauses_json(const MirrorEvaluation& e) {
   for (const MirrorClause& c : e.clauses)
     clauses.push_back({{"clause", c.clause},
                        {"requirement", c.requirement},
-                       {"value", number(c.value)},
-                       {"limit", number(c.limit)},
+                       {"value", number_or_null(c.value)},
+                       {"limit", number_or_null(c.limit)},
                        {"unit", c.unit},
                        {"pass", c.pass},
                        {"certainty", certainty_name(c.certainty)},
@@ -164,29 +168,31 @@ ordered_json clauses_json(const MirrorEvaluation& e) {
 }  // namespace
 
 ordered_json mirror_json(const MirrorEvaluation& e) {
-  ordered_json json{{"scene", e.scene},
-                    {"mirror", e.mirror},
-                    {"mean_radius_mm", number(e.readings.mean_mm)},
-                    {"radius_mm", {{"min", number(e.map.min_mm)}, {"max", number(e.map.max_mm)}}},
-                    {"rule", e.rule_id.empty() ? ordered_json(nullptr) : ordered_json(e.rule_id)},
-                    {"rule_edition", e.rule_edition},
-                    {"clauses", clauses_json(e)},
-                    {"pass", e.clauses.empty() ? ordered_json(nullptr) : ordered_json(e.passes())},
-                    {"rests_on_unverified", e.rests_on_unverified()},
-                    {"field", field_json(e)},
-                    {"blind_zone",
-                     {{"region_mm", polygon(e.blind_region)},
-                      {"region_m2", e.blind.region_m2},
-                      {"blind_m2", e.blind.blind_m2},
-                      {"from_mm", e.blind.from_mm},
-                      {"to_mm", e.blind.to_mm}}},
-                    {"magnification", view_json(e)},
-                    {"readings", readings_json(e)},
-                    {"reflectance", e.reflectance},
-                    {"vehicle", vehicle_json(e.vehicle)}};
+  ordered_json json{
+      {"scene", e.scene},
+      {"mirror", e.mirror},
+      {"mean_radius_mm", number_or_null(e.readings.mean_mm)},
+      {"radius_mm", {{"min", number_or_null(e.map.min_mm)}, {"max", number_or_null(e.map.max_mm)}}},
+      {"rule", e.rule_id.empty() ? ordered_json(nullptr) : ordered_json(e.rule_id)},
+      {"rule_edition", e.rule_edition},
+      {"clauses", clauses_json(e)},
+      {"pass", e.clauses.empty() ? ordered_json(nullptr) : ordered_json(e.passes())},
+      {"rests_on_unverified", e.rests_on_unverified()},
+      {"field", field_json(e)},
+      {"blind_zone",
+       {{"region_mm", polygon(e.blind_region)},
+        {"region_m2", e.blind.region_m2},
+        {"blind_m2", e.blind.blind_m2},
+        {"from_mm", e.blind.from_mm},
+        {"to_mm", e.blind.to_mm}}},
+      {"magnification", view_json(e)},
+      {"readings", readings_json(e)},
+      {"reflectance", e.reflectance},
+      {"vehicle", vehicle_json(e.vehicle)}};
   if (e.aim) json["aim"] = aim_json(*e.aim);
   json["notes"] = e.notes;
   json["map"] = map_json(e);
+  json["inputs"] = inputs_json(e.inputs);
   json["versions"] = versions_json();
   return json;
 }

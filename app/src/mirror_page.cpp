@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/src/file_hash.h"
 #include "app/src/html_report.h"
+#include "app/src/json_values.h"
 #include "app/src/mirror_evaluation_writers.h"
 #include "app/src/output_file.h"
 #include "render/renderer.h"
@@ -31,12 +31,13 @@ std::string mirror_page(const MirrorEvaluation& evaluation, const SceneFile& sce
   page.summary = "What the mirror shows, measured by exact rays in " + evaluation.scene;
   page.mirrors.push_back(mirror_json(evaluation));
   page.mirrors.back()["picture"] = scene_picture(scene.scene);
-  const auto add_input = [&](const std::filesystem::path& file) {
-    page.inputs.push_back({{"file", file.string()}, {"sha256", sha256_of_file(file)}});
-  };
-  if (evaluation.scene != "-") add_input(evaluation.scene);
+  // The picture shows the whole scene.
+  std::vector<std::filesystem::path> files;
+  for (const InputFile& input : evaluation.inputs) files.emplace_back(input.file);
   for (const OpticSource& source : scene.optic_sources)
-    for (const auto& file : source.files) add_input(file);
+    files.insert(files.end(), source.files.begin(), source.files.end());
+  for (const SurroundingSource& source : scene.surrounding_sources) files.push_back(source.file);
+  page.inputs = inputs_json(input_files(files));
   return html_report(page);
 }
 

@@ -108,6 +108,7 @@ void set_planes(const SceneFile& scene, const std::vector<std::size_t>& body, st
   if (!settings.vehicle.empty())
     summary.side_left_mm = outermost_left_mm(scene, body, optic, summary.road, summary.mirror_left);
   if (summary.side_left_mm) {
+    summary.side_from = SidePlane::vehicle;
     vehicle.notes.push_back(
         "The side plane touches the outermost place of the vehicle's meshes behind the mirror; evaluation." +
         key + " would set it.");
@@ -119,6 +120,7 @@ void set_planes(const SceneFile& scene, const std::vector<std::size_t>& body, st
     inner = summary.mirror_left ? std::min(inner, at) : std::max(inner, at);
   }
   summary.side_left_mm = inner;
+  summary.side_from = SidePlane::mirror;
   vehicle.notes.push_back("The side plane is assumed at the mirror's inner end; evaluation." + key +
                           " would set it.");
 }
@@ -127,6 +129,7 @@ void add_bodies(const SceneFile& scene, const std::vector<std::size_t>& body, st
                 MirrorVehicle& vehicle) {
   for (const std::size_t i : body) {
     const SurroundingSource& source = scene.surrounding_sources[i];
+    vehicle.files.push_back(source.file);
     // What is left of the file of several mirrors does not turn with one of them.
     auto& target = belongs_to(source, optic) && source.optics.size() == 1 ? vehicle.attached : vehicle.body;
     if (!target) target = std::make_unique<optics::RayScene>();

@@ -7,9 +7,11 @@
 
 namespace catoptra::app {
 
+/// Fewest letters to change, add or drop from `a` to `b`, letter case ignored. Source: Levenshtein 1966.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
 /// The candidate with the fewest edits from `name` (letter case ignored); empty where none is near enough to
-/// be a slip: more than a third of the longer name's letters would have to change. Distance: Levenshtein
-/// 1966.
+/// be a slip: more than a third of the longer name's letters would have to change.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 /// "a, b, c", cut after `most` names with "... (N in all)".

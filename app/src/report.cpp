@@ -57,6 +57,7 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
     if (errors) {
       entry["outline_pixels"] = errors->at(i).outline_pixels;
       entry["touching_pixels"] = errors->at(i).touching_pixels;
+      entry["other_path_pixels"] = errors->at(i).other_path_pixels;
       entry["error_arcmin"] = quantiles_json(errors->at(i).arcmin);
       entry["error_px"] = quantiles_json(errors->at(i).screen_px);
     }
@@ -76,6 +77,23 @@ ordered_json maps_json(const render::FrameStats& stats) {
                     {"rays", map.rays},
                     {"scene_rays", map.scene_rays}});
   return maps;
+}
+
+ordered_json choice_json(const render::ModeChoice& choice) {
+  ordered_json costs = ordered_json::array();
+  for (const render::ModeCost& cost : choice.costs)
+    costs.push_back({{"mode", render::mode_name(cost.mode)},
+                     {"frame_ms", cost.frame_ms},
+                     {"measured", cost.measured},
+                     {"meets_error", cost.meets_error}});
+  return {{"mode", render::mode_name(choice.mode)},
+          {"reason", choice.reason},
+          {"costs", costs},
+          {"trial_ms", choice.trial_ms}};
+}
+
+render::Mode drawn_mode(render::Mode asked, const render::RenderResult& result) {
+  return result.choice ? result.choice->mode : asked;
 }
 
 ordered_json image_json(const render::ImageError& image) {

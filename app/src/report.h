@@ -30,6 +30,12 @@ inline constexpr double kIdenticalPsnr_db = 200;
 /// One entry per map of mode pvrr, of optics in the picture and in each other.
 [[nodiscard]] nlohmann::ordered_json maps_json(const render::FrameStats& stats);
 
+/// Mode `auto`: which mode drew, and why.
+[[nodiscard]] nlohmann::ordered_json choice_json(const render::ModeChoice& choice);
+
+/// The mode that drew a picture for which `asked` was asked.
+[[nodiscard]] render::Mode drawn_mode(render::Mode asked, const render::RenderResult& result);
+
 [[nodiscard]] nlohmann::ordered_json image_json(const render::ImageError& image);
 
 /// What was used: Catoptra's version, the compiler and the libraries of this folder.

@@ -25,6 +25,53 @@ std::string lower(std::string text) {
   return text;
 }
 
+/// As the rule itself says it.
+struct BuiltIn {
+  std::string id, kind;
+};
+
+BuiltIn built_in(const BuiltInRule& rule) {
+  const toml::table table = toml::parse(rule.text);
+  return {table["id"].value_or(std::string()), table["kind"].value_or(std::string())};
+}
+
+std::string letters_of(std::string_view name) {
+  std::string letters;
+  for (const unsigned char c : name)
+    if (std::isalnum(c)) letters += char(std::tolower(c));
+  return letters;
+}
+
+/// What `name` may have been meant for: the one that differs in punctuation alone, else all that it begins,
+/// else a slip of one of them. Where two are as near (R46-VI, which is no rule here), none is named.
+std::string meant_rules(const std::string& name, const std::vector<std::string>& known) {
+  const std::string letters = letters_of(name);
+  if (letters.empty()) return {};
+  std::vector<std::string> same, begun;
+  for (const std::string& id : known) {
+    if (letters_of(id) == letters) same.push_back(id);
+    if (letters_of(id).starts_with(letters)) begun.push_back(id);
+  }
+  const std::vector<std::string>& found = same.empty() ? begun : same;
+  std::string text;
+  for (const std::string& id : found) text += (text.empty() ? "'" : " or '") + id + "'";
+  if (!text.empty()) return text;
+  const std::string nearest = nearest_name(name, known);
+  if (nearest.empty()) return {};
+  std::vector<std::string> rest;
+  for (const std::string& id : known)
+    if (id != nearest) rest.push_back(id);
+  const std::string second = nearest_name(name, rest);
+  const bool tie = !second.empty() && edit_distance(name, second) == edit_distance(name, nearest);
+  return tie ? std::string{} : "'" + nearest + "'";
+}
+
+std::string rule_hint(const std::string& name, const std::vector<std::string>& known) {
+  const std::string meant = meant_rules(name, known);
+  return (meant.empty() ? "" : "did you mean " + meant + "? ") + "built in: " + list_of_names(known) +
+         "; or the name of a rule file";
+}
+
 /// A text that is there and says something.
 std::string required_text(const TomlTable& table, std::string_view key, const std::string& hint = {}) {
   const auto text = table.text(key);
@@ -165,7 +212,9 @@ RuleFile read_rule_text(std::string_view text, const std::string& name, const Ru
   if (!root.has("format")) root.fail_missing("format", "format = " + std::to_string(kFormat));
   if (*root.integer("format", 1, 1000000) != kFormat)
     root.fail("format", "this version of Catoptra reads format " + std::to_string(kFormat));
-  RuleFile rule{name, "", required_text(root, "kind"), "", "", "", "", "", {}};
+  RuleFile rule;
+  rule.file = name;
+  rule.kind = required_text(root, "kind");
   if (rule.kind != vocabulary.kind)
     root.fail("kind",
               "this is a rule for '" + rule.kind + "', and one for '" + vocabulary.kind + "' is wanted");
@@ -191,27 +240,34 @@ RuleFile read_rule_file(const std::filesystem::path& file, const RuleVocabulary&
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file, ignored))
     throw Error(file.string(), "", "cannot read the rule file", "does it exist and may you read it?");
-  return read_rule_text(std::string{std::istreambuf_iterator<char>(stream), {}}, file.string(), vocabulary);
+  RuleFile rule =
+      read_rule_text(std::string{std::istreambuf_iterator<char>(stream), {}}, file.string(), vocabulary);
+  rule.path = file;
+  return rule;
 }
 
 std::vector<std::string> built_in_rules(std::string_view kind) {
   std::vector<std::string> ids;
   for (const BuiltInRule& rule : built_in_rule_texts())
-    if (toml::parse(rule.text)["kind"].value_or(std::string()) == kind) ids.emplace_back(rule.id);
+    if (const BuiltIn known = built_in(rule); known.kind == kind) ids.push_back(known.id);
   std::sort(ids.begin(), ids.end());
   return ids;
 }
 
 RuleFile find_rule(const std::string& name, const RuleVocabulary& vocabulary) {
   for (const BuiltInRule& rule : built_in_rule_texts())
-    if (lower(std::string(rule.id)) == lower(name))
+    if (lower(std::string(rule.id)) == lower(name)) {
+      if (const BuiltIn known = built_in(rule); known.kind != vocabulary.kind)
+        throw UnknownRule("", "",
+                          known.id + " is a rule for a " + known.kind + ", not for a " + vocabulary.kind,
+                          rule_hint({}, built_in_rules(vocabulary.kind)));
       return read_rule_text(rule.text, std::string(rule.id) + " (built in)", vocabulary);
+    }
   std::error_code ignored;
   if (name.find('/') != std::string::npos || name.ends_with(".toml") ||
       std::filesystem::exists(name, ignored))
     return read_rule_file(name, vocabulary);
-  throw UnknownRule("", "", "unknown rule '" + name + "'",
-                    hint_for_unknown(name, built_in_rules(vocabulary.kind)) + ", or the name of a rule file");
+  throw UnknownRule("", "", "unknown rule '" + name + "'", rule_hint(name, built_in_rules(vocabulary.kind)));
 }
 
 const RuleFigure* find_figure(const RuleFile& rule, std::string_view quantity, std::string_view what,

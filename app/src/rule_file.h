@@ -60,7 +60,8 @@ struct RuleFigure {
 };
 
 struct RuleFile {
-  std::string file;  ///< as the user named it, or "ID (built in)"
+  std::string file;                 ///< as the user named it, or "ID (built in)"
+  std::filesystem::path path = {};  ///< empty for one that is built in
   std::string id, kind, title, edition, date, source, note;
   std::vector<RuleFigure> figures;
 };

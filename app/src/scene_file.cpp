@@ -73,8 +73,10 @@ SceneFile read_scene(const std::filesystem::path& file, const SceneReadOptions& 
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw Error(file.string(), "", "cannot open the scene file", "does it exist and may you read it?");
-  return read_scene_text(read_all(stream), file.string(), std::filesystem::absolute(file).parent_path(),
-                         options);
+  SceneFile scene = read_scene_text(read_all(stream), file.string(),
+                                    std::filesystem::absolute(file).parent_path(), options);
+  scene.path = file;
+  return scene;
 }
 
 }  // namespace catoptra::app

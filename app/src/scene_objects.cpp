@@ -197,7 +197,7 @@ void read_surroundings(const TomlTable& root, const SceneContext& context, Scene
     auto mesh = cad_import::import_mesh(entry.path, options);
     result.scene.warnings.insert(result.scene.warnings.end(), mesh.warnings.begin(), mesh.warnings.end());
     result.scene.surroundings.push_back(std::move(mesh));
-    result.surrounding_sources.push_back({name.value_or(entry.path.stem().string()), {}});
+    result.surrounding_sources.push_back({name.value_or(entry.path.stem().string()), {}, entry.path});
   }
 }
 

@@ -105,7 +105,7 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
                       .value_or(settings.mode);
   settings.max_error_px = table.number("max_error_px", Range::not_negative()).value_or(settings.max_error_px);
   settings.patch_fov_rad = glm::radians(table.number("patch_fov_deg", {1, 170}).value_or(60));
-  settings.depth = table.integer("depth", 0, 32).value_or(settings.depth);
+  settings.depth = table.integer("depth", 1, 32).value_or(settings.depth);
   settings.chord_mm = table.number("chord_mm", Range::positive()).value_or(settings.chord_mm);
   settings.angle_rad = glm::radians(table.number("angle_deg", {0, 90, true}).value_or(5));
   settings.texels_per_pixel =

@@ -55,6 +55,8 @@ render::RenderResult Session::render(render::Mode mode, const render::FrameOptio
   render::RenderResult result = renderer().render(mode, file.scene.camera, options);
   progress.clear();
   for (const std::string& warning : result.warnings) spdlog::warn(warning);
+  if (result.choice)
+    spdlog::info("mode auto: {}, {}", render::mode_name(result.choice->mode), result.choice->reason);
   return result;
 }
 

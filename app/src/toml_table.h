@@ -59,6 +59,10 @@ class TomlTable {
   /// The tables of an array of tables; empty where absent.
   [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key) const;
 
+  /// The number of a node, checked like number().
+  [[nodiscard]] double number_of(const toml::node& node, std::string_view key, Range range) const {
+    return checked_number(node, key, range);
+  }
   /// Numbers of an array node, checked like numbers().
   [[nodiscard]] std::vector<double> numbers_of(const toml::node& node, std::string_view key,
                                                std::size_t count, Range range) const;

@@ -65,6 +65,10 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
       if (exact != shown && id >= 0 && std::size_t(id) < result.optics.size())
         ++result.optics[std::size_t(id)].outline_pixels;
     if (exact != shown || exact < 0 || std::size_t(exact) >= result.optics.size()) continue;
+    if (path_of(reference, i) != path_of(frame, i)) {
+      ++result.optics[std::size_t(exact)].other_path_pixels;
+      continue;
+    }
     if (both_touch(reference, frame, i)) {
       ++result.optics[std::size_t(exact)].touching_pixels;
       continue;
@@ -92,6 +96,10 @@ std::vector<float> error_map_arcmin(const Frame& reference, const Frame& frame) 
   std::vector<float> map(reference.color.size(), -1);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (reference.optic_id[i] < 0 || reference.optic_id[i] != frame.optic_id[i]) continue;
+    if (path_of(reference, i) != path_of(frame, i)) {
+      map[i] = kOtherPath_arcmin;
+      continue;
+    }
     if (both_touch(reference, frame, i)) continue;
     if (const auto direction = shown_direction(reference, frame, i))
       map[i] = float(kArcminPerRad * angle(*direction, glm::dvec3(reference.direction[i])));

@@ -1,16 +1,17 @@
 #include <array>
 #include <utility>
 
-#include "render/renderer.h"
+#include "render/mode.h"
 
 namespace catoptra::render {
 namespace {
 
-constexpr std::array<std::pair<Mode, std::string_view>, 5> kNames{{{Mode::pvrr, "pvrr"},
+constexpr std::array<std::pair<Mode, std::string_view>, 6> kNames{{{Mode::pvrr, "pvrr"},
                                                                    {Mode::hybrid, "hybrid"},
                                                                    {Mode::exact, "exact"},
                                                                    {Mode::raytrace, "raytrace"},
-                                                                   {Mode::cubemap, "cubemap"}}};
+                                                                   {Mode::cubemap, "cubemap"},
+                                                                   {Mode::automatic, "auto"}}};
 
 }  // namespace
 

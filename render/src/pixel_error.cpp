@@ -20,12 +20,12 @@ bool touches(const Frame& reference, const Frame& frame, std::size_t i) {
   return glm::distance(surface, point) < rounding_mm * kArcminPerRad;
 }
 
-/// Change of a value of the reference from pixel to pixel along one axis, within the optic: central where
-/// both neighbours show it, else one-sided; nullopt where neither does.
+/// Change of a value of the reference from pixel to pixel along one axis, within the path: central where both
+/// neighbours have the same, else one-sided; nullopt where neither has.
 std::optional<glm::dvec3> difference(const Frame& f, const std::vector<glm::vec3>& values, std::size_t i,
                                      int x, int width, std::size_t stride) {
-  const bool before = x > 0 && f.optic_id[i - stride] == f.optic_id[i];
-  const bool after = x + 1 < width && f.optic_id[i + stride] == f.optic_id[i];
+  const bool before = x > 0 && path_of(f, i - stride) == path_of(f, i);
+  const bool after = x + 1 < width && path_of(f, i + stride) == path_of(f, i);
   if (!before && !after) return std::nullopt;
   const glm::dvec3 high(values[after ? i + stride : i]), low(values[before ? i - stride : i]);
   return (high - low) / ((before && after) ? 2.0 : 1.0);

@@ -13,7 +13,7 @@ namespace catoptra::render {
 inline constexpr double kArcminPerRad = 60 * 180 / std::numbers::pi;
 
 // `reference` has the exact rays, surface point and direction, where its `optic_id` is an optic's; `frame` is
-// the picture that is judged; `i` a pixel that shows the same optic in both.
+// the picture that is judged; `i` a pixel that shows the same path in both.
 
 /// Both pictures show what touches the optic: see OpticError::touching_pixels.
 [[nodiscard]] bool both_touch(const Frame& reference, const Frame& frame, std::size_t i);

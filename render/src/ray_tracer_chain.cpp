@@ -101,9 +101,8 @@ void TracedChains::optic_changed(std::size_t index) {
     mirrors_[index] = std::make_unique<Mirror>();
     own_sine_[index] = own_sight_sine(optic.mesh, reflecting_sense(optic));
   }
-  possible_ =
-      depth() > 1 && (scene_.optics.size() > 1 || lenses_.possible_next() ||
-                      std::ranges::any_of(own_sine_, [](double sine) { return sine > 0; }));
+  possible_ = depth() > 1 && (scene_.optics.size() > 1 || lenses_.possible_next() ||
+                              std::ranges::any_of(own_sine_, [](double sine) { return sine > 0; }));
 }
 
 bool TracedChains::find_next(const optics::RayPacket16& hits, const LeftOptics& left, MetOptics& met) const {
@@ -147,9 +146,8 @@ void TracedChains::meet_mirrors(const BeamLanes& beams, const MetOptics& met, Me
     Mirror& mirror = *mirrors_[index];
     // Isolated: a thread that waits here must not take up work that waits here itself.
     std::call_once(mirror.fitted, [&] {
-      tbb::this_task_arena::isolate([&] {
-        mirror.patches = std::make_unique<LensSidePatches>(side_of_mirror(scene_.optics[index]));
-      });
+      tbb::this_task_arena::isolate(
+          [&] { mirror.patches = std::make_unique<LensSidePatches>(side_of_mirror(scene_.optics[index])); });
     });
     LensSidePatches::MeshHits hits{};
     for (int i = 0; i < kLanes; ++i) {

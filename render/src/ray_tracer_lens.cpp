@@ -30,7 +30,8 @@ void set_ray(optics::RayPacket16& packet, int i, const glm::dvec3& origin, const
   packet.t_max[i] = t_max;
 }
 
-/// Whether any of the lanes `asked` may meet the box before its t_max; lanes that cannot are taken out. Slabs.
+/// Whether any of the lanes `asked` may meet the box before its t_max; lanes that cannot are taken out.
+/// Slabs.
 bool reaches(const optics::RayPacket16& rays, const cad_import::BoundingBox& box, bool (&asked)[kLanes]) {
   constexpr float kMargin_mm = 0.1f;
   const glm::vec3 low = glm::vec3(box.min) - kMargin_mm, high = glm::vec3(box.max) + kMargin_mm;
@@ -227,8 +228,8 @@ void TracedLenses::meet_exits(const Lens& lens, optics::LensSide entered, const 
   optics::RayPacket16 query;
   bool active[kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    active[i] = here[i] && inside.possible[i] &&
-                glm::dot(lanes.eye.direction.at(i), lanes.entry.normal.at(i)) < 0;
+    active[i] =
+        here[i] && inside.possible[i] && glm::dot(lanes.eye.direction.at(i), lanes.entry.normal.at(i)) < 0;
     set_ray(query, i, {0, 0, 0}, {1, 0, 0}, -1);
     if (!active[i]) continue;
     const glm::dvec3 direction = inside.beams.direction.at(i);

@@ -65,8 +65,8 @@ class TracedLenses {
   void enter(const CameraRays& camera, const double (&column)[LensLanes::kLanes],
              const double (&row)[LensLanes::kLanes], LensLanes& lanes) const;
 
-  /// The same for beams on their way: `lanes` with its optics, sides, triangles and `eye` (the beams) set; the
-  /// mesh's hits at `distance`, mm.
+  /// The same for beams on their way: `lanes` with its optics, sides, triangles and `eye` (the beams) set;
+  /// the mesh's hits at `distance`, mm.
   void meet_entries(const double (&distance)[LensLanes::kLanes], LensLanes& lanes) const;
 
   /// The lenses that rays which have left `left` meet before the t_max of `rays`: sets those lanes of `met`.
@@ -101,7 +101,7 @@ class TracedLenses {
   /// The rays behind the lenses at wavelength number `sample`; 0 is the one that geometry belongs to.
   void refract(const LensLanes& lanes, std::size_t sample, RefractedLanes& out) const;
   /// The same with indices by lane; null: the lane is left out.
-  using IndexLanes = const optics::LensIndices* [LensLanes::kLanes];
+  using IndexLanes = const optics::LensIndices * [LensLanes::kLanes];
   void refract(const LensLanes& lanes, const IndexLanes& indices, RefractedLanes& out) const;
 
   /// Adds to `lanes.radiance` what the shaded rays of wavelength number `sample` show.
@@ -112,7 +112,7 @@ class TracedLenses {
     std::size_t optic;  ///< index in Scene::optics
     optics::LensTracer tracer;
     std::vector<optics::SpectralSample> samples;
-    std::vector<optics::LensIndices> indices;  ///< by sample
+    std::vector<optics::LensIndices> indices;     ///< by sample
     std::vector<optics::LensIndices> indices_at;  ///< by number in the table of wavelengths
     std::vector<int> wavelengths;                 ///< numbers of the samples
     optics::RayScene front, back;                 ///< each side's mesh, for finding entries and exits
@@ -136,7 +136,7 @@ class TracedLenses {
 
   const Scene& scene_;
   std::vector<std::unique_ptr<Lens>> lenses_;
-  std::vector<const Lens*> by_optic_;  ///< null: a mirror
+  std::vector<const Lens*> by_optic_;   ///< null: a mirror
   std::vector<double> wavelengths_nm_;  ///< of all lenses, each once
 };
 

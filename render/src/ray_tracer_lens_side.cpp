@@ -221,8 +221,7 @@ tessellate::OpticVertex exact_side_point(const optics::LensSideView& side, const
 }
 
 LensSidePatches::LensSidePatches(const optics::LensSideView& side)
-    : side_(side),
-      patches_(side.faces, *side.mesh), outline_corners_(side.mesh->triangles.size(), 0) {
+    : side_(side), patches_(side.faces, *side.mesh), outline_corners_(side.mesh->triangles.size(), 0) {
   // An edge within a face belongs to two of its triangles. A mesh may be wider than its faces: then the
   // triangles whose corners are trimmed away are left out too.
   struct Edge {

@@ -74,7 +74,8 @@ void meet_vertex(const tessellate::OpticVertex& vertex, const BeamLanes& beams, 
 [[nodiscard]] tessellate::OpticVertex exact_side_point(const optics::LensSideView& side,
                                                        const optics::ExactHit& hit);
 
-/// One side of a lens, or a mirror, as polynomial patches. Near the outline of a face they do not say whether it is met.
+/// One side of a lens, or a mirror, as polynomial patches. Near the outline of a face they do not say whether
+/// it is met.
 class LensSidePatches {
  public:
   /// `side` must outlive this and stay as it is.

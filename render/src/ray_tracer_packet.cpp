@@ -320,8 +320,7 @@ std::size_t PacketTracer::refract_exact(const PacketView& view, std::size_t extr
   std::array<std::size_t, kLanes> sample{};  // lenses differ in their number of wavelengths
   for (int i = 0; i < kLanes; ++i)
     if (p.lens.optic[i] >= 0)
-      sample[std::size_t(i)] =
-          extreme_sample(lenses_.sample_count_of(std::size_t(p.lens.optic[i])), extreme);
+      sample[std::size_t(i)] = extreme_sample(lenses_.sample_count_of(std::size_t(p.lens.optic[i])), extreme);
   lenses_.enter(view.camera, p.column, p.row, p.lens);
   PixelPacket waiting = pixels;
   for (int i = 0; i < kLanes; ++i) waiting.active[i] = pixels.active[i] && p.lens.optic[i] >= 0;

@@ -19,8 +19,8 @@ struct alignas(64) PacketTracer::Packet {
   MirrorLanes mirror;
   ShadeLanes shade;
   double column[PixelPacket::kLanes], row[PixelPacket::kLanes];  ///< with the sample's offset
-  double stretch[PixelPacket::kLanes];              ///< length of the first direction, of mirror lanes
-  int optic[PixelPacket::kLanes];                   ///< whose reflecting side the pixel shows; -1: none
+  double stretch[PixelPacket::kLanes];  ///< length of the first direction, of mirror lanes
+  int optic[PixelPacket::kLanes];       ///< whose reflecting side the pixel shows; -1: none
   bool any_mirror;
   LensLanes lens;
 };

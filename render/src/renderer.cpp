@@ -1,7 +1,10 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cad_import/error.h"
@@ -11,6 +14,7 @@
 #include "render/src/exact_frame.h"
 #include "render/src/gl_context.h"
 #include "render/src/hybrid_frame.h"
+#include "render/src/mode_chooser.h"
 #include "render/src/pvrr_frame.h"
 #include "render/src/raster_scene.h"
 #include "render/src/ray_tracer.h"
@@ -37,6 +41,21 @@ cad_import::BoundingBox bounds_of(const optics::Optic& optic) {
   for (const auto* mesh : {&optic.mesh, &optic.back.mesh})
     for (const auto& vertex : mesh->vertices) widen(box, vertex.position_mm);
   return box;
+}
+
+FrameCost cost_of(const RenderResult& result, Mode mode, double total_ms) {
+  FrameCost cost{total_ms, 0, -1};
+  if (mode != Mode::exact) return cost;
+  for (const char* pass : {"trace", "pass1", "pass2", "readback"})
+    if (const auto ms = result.stats.time_ms.find(pass); ms != result.stats.time_ms.end())
+      cost.pvrr_ms += ms->second;
+  std::size_t shown = 0, wrong = 0;
+  for (const OpticStats& optic : result.stats.optics) {
+    shown += optic.shown_pixels;
+    wrong += optic.retraced_pixels;
+  }
+  cost.wrong_share = shown > 0 ? double(wrong) / double(shown) : 0;
+  return cost;
 }
 
 /// Everything that lives on the GPU. Members go in reverse order, with the context current (see ~Impl).
@@ -97,6 +116,64 @@ struct Renderer::Impl {
     RenderResult result = draw(mode, camera, options);
     context->throw_if_errors();
     return result;
+  }
+
+  /// Whether a picture has nothing new against the last one, and may use it.
+  bool stays(const Camera& camera, const FrameOptions& options) {
+    const bool same = last_camera && last_camera->eye_mm == camera.eye_mm &&
+                      last_camera->target_mm == camera.target_mm && last_camera->up == camera.up &&
+                      last_camera->fov_rad == camera.fov_rad;
+    last_camera = camera;
+    return same && options.reuse_static;
+  }
+
+  bool can_raster() {
+    try {
+      if (!context) context = GlContext::create();
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
+
+  RenderResult render(Mode mode, const Camera& camera, const FrameOptions& options) {
+    if (mode == Mode::automatic) return render_automatically(camera, options);
+    return mode == Mode::raytrace ? placed_tracer().render(camera, options)
+                                  : render_on_gpu(mode, camera, options);
+  }
+
+  /// A picture by the mode that the chooser takes, and before it the small ones from which that predicts.
+  RenderResult render_automatically(const Camera& camera, const FrameOptions& options) {
+    if (!chooser) chooser.emplace(scene.settings.max_error_px, !scene.optics.empty(), can_raster());
+    const FrameKind kind{{options.width, options.height}, options.samples, stays(camera, options)};
+    double trial_ms = 0;
+    while (const auto trial = chooser->next_trial(kind)) {
+      FrameOptions small = options;
+      small.width = trial->size.x;
+      small.height = trial->size.y;
+      small.samples = 1;
+      small.reuse_static = small.geometry = false;
+      const FrameCost cost = timed(trial->mode, camera, small).second;
+      chooser->trial_drawn(*trial, cost);
+      trial_ms += cost.total_ms;
+    }
+    ModeChoice choice = chooser->choose(kind);
+    choice.trial_ms = trial_ms;
+    auto [result, cost] = timed(choice.mode, camera, options);
+    chooser->frame_drawn(choice.mode, kind, cost);
+    result.stats.time_ms["total"] += trial_ms;
+    if (trial_ms > 0) result.stats.time_ms["trials"] = trial_ms;
+    result.choice = std::move(choice);
+    return std::move(result);
+  }
+
+  std::pair<RenderResult, FrameCost> timed(Mode mode, const Camera& camera, const FrameOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    RenderResult result = render(mode, camera, options);
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    const FrameCost cost = cost_of(result, mode, ms);
+    return {std::move(result), cost};
   }
 
   RenderResult draw(Mode mode, const Camera& camera, const FrameOptions& options) {
@@ -161,6 +238,9 @@ struct Renderer::Impl {
 
   std::unique_ptr<GlContext> context;
   std::unique_ptr<Gpu> gpu;
+
+  std::optional<ModeChooser> chooser;  ///< of mode automatic, from its first picture on
+  std::optional<Camera> last_camera;   ///< mode automatic: of the last picture, where nothing has moved since
 };
 
 Renderer::Renderer(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -172,13 +252,14 @@ RenderResult Renderer::render(Mode mode, const Camera& camera, const FrameOption
                 "cannot make a picture of " + std::to_string(options.width) + " x " +
                     std::to_string(options.height) + " pixels with " + std::to_string(options.samples) +
                     " samples");
-  if (mode == Mode::raytrace) return impl_->placed_tracer().render(camera, options);
-  return impl_->render_on_gpu(mode, camera, options);
+  return impl_->render(mode, camera, options);
 }
 
 void Renderer::optic_changed(std::size_t index) {
   const optics::Optic& optic = impl_->scene.optics.at(index);
   impl_->optic_boxes[index] = bounds_of(optic);
+  impl_->last_camera.reset();
+  if (impl_->chooser) impl_->chooser->forget();
   if (impl_->placed_scene) {
     impl_->untraced[index] = true;
   } else {
@@ -197,6 +278,7 @@ void Renderer::place_optic(std::size_t index, const glm::dmat4& placement) {
   const auto placed = optics::placement_from_matrix(placement, impl_->scene.optics.at(index).name);
   if (placed == impl_->placements[index]) return;
   impl_->placements[index] = placed;
+  impl_->last_camera.reset();
   impl_->untraced[index] = true;
   if (impl_->gpu) impl_->place_on_gpu(index);
 }

@@ -52,11 +52,10 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
       {"render", "scene.toml"},
       {"render", "scene.toml", "-o", "x.png", "--samples", "0"},
       {"render", "scene.toml", "-o", "x.png", "--overlay", "traced"},
-      {"render", "scene.toml", "-o", "x.png", "--mode", "auto"},
       {"render", "scene.toml", "-o", "x.png", "--mode", "pvr"},
       {"render", "scene.toml", "-o", "x.png", "--overlay", "patches"},
       {"render", "scene.toml", "-o", "x.png", "--resolution", "12"},
-      {"compare", "scene.toml", "-o", "out", "--modes", "pvrr,auto"},
+      {"compare", "scene.toml", "-o", "out", "--modes", "pvrr,automatic"},
       {"compare", "scene.toml", "-o", "out", "--modes", "raytrace"},
       {"bench", "scene.toml", "--frames", "none"},
       {"info"},
@@ -98,11 +97,6 @@ TEST(CommandLine, WrongUsageIsOneLineAndExitCode2) {
     EXPECT_EQ(lines_in(result.errors), 1u) << line << result.errors;
     EXPECT_EQ(result.errors.rfind("catoptra: ", 0), 0u) << line << result.errors;
   }
-}
-
-TEST(CommandLine, WhatIsNotInThisVersionSaysSo) {
-  EXPECT_TRUE(holds(run_catoptra({"render", "s.toml", "-o", "x.png", "--mode", "auto"}).errors,
-                    "not in this version"));
 }
 
 TEST(CommandLine, MisspeltWordsSuggestTheNearest) {

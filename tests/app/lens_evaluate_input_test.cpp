@@ -135,6 +135,9 @@ TEST_F(LensEvaluateInput, RuleOfTheUser) {
                                        "certainty = \"verified\"\n")
                                .string();
   EXPECT_EQ(run(joined(order("-4", rule), {"--strict"})).code, 0);
+  const auto inputs =
+      nlohmann::json::parse(run(joined(order("-4", rule), {"--json", "-"})).output).at("inputs");
+  EXPECT_EQ(inputs.back().at("file"), rule) << "a verdict rests on its figures";
   EXPECT_EQ(run(joined(order("-4.02", rule), {"--strict"})).code, 3);
   const std::string broken = folder_->write("broken.toml", "format = 1\nid = 3\n").string();
   const CommandResult result = run(order("-4", broken));
@@ -159,6 +162,9 @@ TEST_F(LensEvaluateInput, WrongUsageIsToldBeforeAnythingIsRead) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
       {{}, "--index N or --material"},
       {{"--index", "0.9"}, "--index 0.9"},
+      {{"--index", "1.5", "--rule", "iso-8980"}, "did you mean 'iso-8980-1-2004' or 'iso-8980-2-2004'?"},
+      {{"--index", "1.5", "--rule", "R46-VI"}, "built in: ansi-z80.1-2015"},
+      {{"--index", "1.5", "--rule", "R46-III"}, "R46-III is a rule for a mirror, not for a lens"},
       {{"--index", "nan"}, "--index"},
       {{"--index", "1.5", "--material", "CR-39"}, "excludes"},
       {{"--material", "CR-93"}, "CR-39"},

@@ -1,6 +1,8 @@
 // catoptra lens evaluate: what it measures, and the shape of its reports.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 
@@ -116,6 +118,47 @@ TEST(LensEvaluate, PrismAndItsBase) {
 
 /// The front's own growth of power; the ray to the near point runs obliquely through the back, hence the 0.05
 /// D.
+/// What a focimeter reads on a prismatic lens with a curved front, by Coddington's scalar equations: the beam
+/// leaves along the back's normal, so the back is met square and the front at a slant, which adds power
+/// there. No wave matrix, no B-spline and no tracing is in it.
+TEST(LensEvaluate, PrismaticLensReadsAsAFocimeterReadsIt) {
+  constexpr double kIndex = 1.5, kThickness_m = 2e-3;
+  const TemporaryFolder folder;
+  double farthest = 0;
+  for (const double front_d : {4.0, 8.0}) {
+    const std::string file = (folder / "prismatic.step").string();
+    const CommandResult made =
+        run_catoptra({"lens", "make", "--sph", "-3.25", "--prism", "3", "--base-deg", "90", "--index", "1.5",
+                      "--front-curve", std::to_string(front_d), "--center-thickness", "2", "-o", file});
+    ASSERT_EQ(made.code, 0) << made.errors;
+    double upright_mm = 0, level_mm = 0;  // the back's radii, in the plane of the prism and across it
+    const std::string radii = "radii ";
+    ASSERT_EQ(std::sscanf(made.output.c_str() + made.output.find(radii), "radii %lf and %lf", &level_mm,
+                          &upright_mm),
+              2);
+    if (std::abs(level_mm) < std::abs(upright_mm)) std::swap(level_mm, upright_mm);
+
+    const json reading = evaluate(file, {"--index", "1.5"}).at("reference");
+    const double deviation = std::atan(at(reading, "prism_v") / 100);
+    // sin(i) = n sin(i') and i - i' = deviation.
+    const double inside = std::atan(std::sin(deviation) / (kIndex - std::cos(deviation))),
+                 outside = inside + deviation;
+    const double slant_d = (kIndex * std::cos(inside) - std::cos(outside)) / (kIndex - 1) * front_d;
+    const auto left = [&](double power_d, double back_mm) {
+      return power_d / (1 - kThickness_m / kIndex / std::cos(inside) * power_d) -
+             (kIndex - 1) * 1000 / std::abs(back_mm);
+    };
+    const double tangential = slant_d / std::pow(std::cos(inside), 2), sagittal = slant_d;
+    const double one = left(tangential, level_mm), other = left(sagittal, upright_mm);
+    EXPECT_NEAR(at(reading, "sphere_d"), std::max(one, other), kPower_d) << front_d;
+    EXPECT_NEAR(at(reading, "sphere_d") + at(reading, "cylinder_d"), std::min(one, other), kPower_d)
+        << front_d;
+    EXPECT_NEAR(at(reading, "prism_h"), 0, kPrism);
+    farthest = std::max(farthest, at(reading, "sphere_d") + 3.25);
+  }
+  EXPECT_GT(farthest, 0.05) << "else nothing slants";
+}
+
 TEST(LensEvaluate, AdditionOfAProgressiveLens) {
   const TemporaryFolder folder;
   const std::string file = make_lens(folder, {"--sph", "1", "--add", "2", "--index", "1.6"});
@@ -246,6 +289,34 @@ TEST(LensEvaluate, TextTellsReadingAndTable) {
   }
   ASSERT_EQ(widths.size(), 31u);
   for (const std::size_t width : widths) EXPECT_EQ(width, widths.front());
+}
+
+/// Distortion compares lines of sight: a focimeter's reading has none, and 0.00 would be a claim.
+TEST(LensEvaluate, FocimeterHasNoDistortion) {
+  const TemporaryFolder folder;
+  const std::string file = make_lens(folder, {"--sph", "-4"});
+  const auto last_row = [&](const char* mode) {
+    const CommandResult result =
+        run_catoptra({"lens", "evaluate", file, "--index", "1.5", "--mode", mode, "--gaze", "30,0"});
+    EXPECT_EQ(result.code, 0) << result.errors;
+    std::istringstream lines(result.output);
+    std::vector<std::string> cells;
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+      if (!found.empty() && found[0] == "30.0") cells = found;
+    }
+    return cells;
+  };
+  ASSERT_EQ(last_row("lensmeter").size(), 17u);
+  EXPECT_EQ(last_row("lensmeter")[15], "-");
+  EXPECT_GT(std::stod(last_row("as-worn")[15]), 1);
+  EXPECT_EQ(evaluate(file, {"--index", "1.5"}).at("points").at(0).at("distortion"), nullptr);
+  EXPECT_TRUE(evaluate(file, {"--index", "1.5", "--mode", "as-worn"})
+                  .at("points")
+                  .at(0)
+                  .at("distortion")
+                  .is_number());
 }
 
 }  // namespace

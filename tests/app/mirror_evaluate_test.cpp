@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/src/file_hash.h"
 #include "app/src/mirror_evaluation.h"
 #include "tests/app/command_runner.h"
 #include "tests/app/test_scene.h"
@@ -228,7 +229,8 @@ TEST(MirrorEvaluate, ErrorsNameWhatIsWrong) {
     EXPECT_NE(result.errors.find(text), std::string::npos) << result.errors;
     EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
   };
-  complains({"mirror", "evaluate", scene, "--rule", "R46-II1"}, 2, "did you mean 'r46-ii");
+  complains({"mirror", "evaluate", scene, "--rule", "R46-II1"}, 2,
+            "built in: FMVSS111-driver, FMVSS111-inside");
   complains({"mirror", "evaluate", scene, "--strict"}, 2, "--strict needs a rule");
   complains({"mirror", "evaluate", scene, "--mirror", "dor"}, 1, "did you mean 'door'?");
   complains({"mirror", "evaluate", scene, "--aim"}, 1, "there is no zone to aim at");
@@ -246,6 +248,55 @@ TEST(MirrorEvaluate, ErrorsNameWhatIsWrong) {
   door.evaluation = "ocular_points = [[0, 0, 1200]]\n";
   complains({"mirror", "evaluate", write_door(folder, door)}, 1, "expected two points");
   complains({"mirror", "evaluate", folder.write("none.toml", "[camera]\n").string()}, 1, "has no [[mirror]]");
+}
+
+TEST(MirrorEvaluate, ReportHasTheHashOfEachFileThatItRestsOn) {
+  const TemporaryFolder folder;
+  const auto wall = folder.write("wall.obj", "v 0 -1 0\nv 1 -1 0\nv 1 -1 1\nf 1 2 3\n");
+  folder.write("other.obj", "v 0 -1 0\nv 1 -1 0\nv 1 -1 1\nf 1 2 3\n");
+  DoorScene door;
+  door.more =
+      "[[surrounding]]\nname = \"wall\"\nfile = \"wall.obj\"\n[[surrounding]]\nname = \"far\"\n"
+      "file = \"other.obj\"\n[[surrounding]]\nname = \"again\"\nfile = \"wall.obj\"\n";
+  door.evaluation += "vehicle = [\"wall\", \"again\"]\n";
+  const std::string scene = write_door(folder, door);
+  const json report = evaluate(scene, {});
+  json expected = json::array();
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(scene), folder / "door.step", wall})  // what is not in the way has no say
+    expected.push_back({{"file", file.string()}, {"sha256", app::sha256_of_file(file)}});
+  EXPECT_EQ(report.at("inputs"), expected);
+  const auto own = folder.write("own.toml",
+                                "format = 1\nid = \"own\"\nkind = \"mirror\"\ntitle = \"t\"\nedition = "
+                                "\"1\"\ndate = \"2026\"\nsource = \"s\"\n[[figure]]\nquantity = "
+                                "\"mean_radius_min\"\nclause = \"1\"\nunit = \"mm\"\nvalue = 1000\n"
+                                "certainty = \"verified\"\n");
+  const json judged = evaluate(scene, {"--rule", own.string()});
+  EXPECT_EQ(judged.at("inputs").size(), 4u);
+  EXPECT_EQ(judged.at("inputs").back().at("sha256"), app::sha256_of_file(own));
+}
+
+TEST(MirrorEvaluate, MissingSidePlaneIsAssumedAndSaidWhere) {
+  const TemporaryFolder folder;
+  folder.write("car.obj", "v -500 -900 0\nv 1270 -900 0\nv 1270 -900 900\nv -500 -900 900\nf 1 2 3 4\n");
+  const auto vehicle = [&](const std::string& evaluation, const std::string& more) {
+    DoorScene door;
+    door.more = more;
+    door.evaluation = evaluation;
+    const json report = evaluate(write_door(folder, door), {"--rule", "R46-III"});
+    EXPECT_EQ(report.at("notes").dump().find("side plane") == std::string::npos,
+              report.at("vehicle").at("side_plane_from") == "scene");
+    return report.at("vehicle");
+  };
+  const std::string car = "[[surrounding]]\nname = \"car\"\nfile = \"car.obj\"\n";
+  EXPECT_EQ(vehicle("left_side = [-530, 0, 0]\n", car).at("side_plane_from"), "scene");
+  const json touched = vehicle("vehicle = [\"car\"]\n", car);
+  EXPECT_EQ(touched.at("side_plane_from"), "vehicle");
+  EXPECT_NEAR(touched.at("side_left_mm").get<double>(), 500, 1e-3);
+  const json assumed = vehicle("", "");
+  EXPECT_EQ(assumed.at("side_plane_from"), "mirror");
+  // The glass, 170 mm wide and turned by 20.3 degrees, ends 85 cos 20.3 inwards of its pole.
+  EXPECT_NEAR(assumed.at("side_left_mm").get<double>(), 660 - 85 * std::cos(20.3 * 3.14159265 / 180), 3);
 }
 
 TEST(MirrorEvaluate, EyesMayBeGivenInThreeWays) {

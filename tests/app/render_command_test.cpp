@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/comparison.h"
 #include "render/image_io.h"
 #include "tests/app/command_runner.h"
 #include "tests/app/test_scene.h"
@@ -35,6 +36,25 @@ TEST(RenderCommand, EveryModeShowsTheWallInTheMirror) {
     EXPECT_GT(right.g, right.r + 0.2f) << mode;
     EXPECT_GT(beside.b, 0.9f) << mode << ": the sky beside the mirror";
   }
+}
+
+TEST(RenderCommand, ModeAutoSaysWhichModeDrewAndWhy) {
+  const TemporaryFolder folder;
+  const std::string scene = write_test_scene(folder).string(), report_file = (folder / "r.json").string();
+  const CommandResult result = run_catoptra({"render", scene, "-o", (folder / "auto.png").string(), "--mode",
+                                             "auto", "--report", report_file, "--log-level", "info"});
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const json report = json::parse(read_file(report_file)), choice = report.at("choice");
+  EXPECT_EQ(report.at("mode"), "auto");
+  const std::string mode = choice.at("mode");
+  EXPECT_NE(result.errors.find("mode auto: " + mode + ", "), std::string::npos) << result.errors;
+  EXPECT_EQ(choice.at("costs").size(), 4u);
+  EXPECT_GT(choice.at("trial_ms"), 0);
+  // Whatever mode it was, the picture is that of the tracer within what the error asked for lets differ.
+  ASSERT_EQ(
+      run_catoptra({"render", scene, "-o", (folder / "traced.png").string(), "--mode", "raytrace"}).code, 0);
+  const render::Frame traced = render::read_image(folder / "traced.png");
+  EXPECT_LT(render::image_error(traced, render::read_image(folder / "auto.png")).flip_mean, 0.03);
 }
 
 TEST(RenderCommand, ResolutionAndReport) {

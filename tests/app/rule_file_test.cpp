@@ -8,6 +8,7 @@
 
 #include "app/src/built_in_rules.h"
 #include "app/src/lens_limits.h"
+#include "app/src/mirror_rules.h"
 #include "tests/app/temporary_folder.h"
 
 namespace catoptra::app {
@@ -177,6 +178,34 @@ TEST(FindRule, BuiltInNameFileOrNearestName) {
     EXPECT_NE(std::string(error.what()).find("did you mean 'iso-8980-1-2004'?"), std::string::npos)
         << error.what();
   }
+}
+
+TEST(BuiltInRules, UnknownNamesGetTheNearestAndTheWholeList) {
+  const auto hint = [](const std::string& name, const RuleVocabulary& words) {
+    try {
+      (void)find_rule(name, words);
+    } catch (const UnknownRule& error) {
+      return error.hint();
+    }
+    return std::string("no error");
+  };
+  const std::string mirrors =
+      "built in: FMVSS111-driver, FMVSS111-inside, FMVSS111-passenger, R46-I, R46-II, R46-III, R46-IV, "
+      "R46-V; "
+      "or the name of a rule file";
+  const std::string lenses =
+      "built in: ansi-z80.1-2015, iso-21987-2017, iso-8980-1-2004, iso-8980-2-2004; or the name of a rule "
+      "file";
+  EXPECT_EQ(hint("R46III", mirror_rule_words()), "did you mean 'R46-III'? " + mirrors);
+  EXPECT_EQ(hint("fmvss 111 drivr", mirror_rule_words()), "did you mean 'FMVSS111-driver'? " + mirrors);
+  EXPECT_EQ(hint("R46-VI", mirror_rule_words()), mirrors) << "I, V and II are one letter away";
+  EXPECT_EQ(hint("iso-21987-2004", mirror_rule_words()), mirrors);
+  EXPECT_EQ(hint("iso-8980", lens_rule_words()),
+            "did you mean 'iso-8980-1-2004' or 'iso-8980-2-2004'? " + lenses);
+  EXPECT_EQ(hint("iso8980-1", lens_rule_words()), "did you mean 'iso-8980-1-2004'? " + lenses);
+  EXPECT_EQ(hint("ansi-z80", lens_rule_words()), "did you mean 'ansi-z80.1-2015'? " + lenses);
+  EXPECT_EQ(hint("r46-iii", lens_rule_words()), lenses) << "it judges mirrors";
+  EXPECT_EQ(hint("", lens_rule_words()), lenses);
 }
 
 TEST(BuiltInRules, AllLensRulesAreReadAndNamedAsTheirFiles) {

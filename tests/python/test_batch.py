@@ -44,6 +44,38 @@ def test_the_same_rows_as_the_program(plan, tmp_path):
     assert again == (0, 0)
 
 
+INTERRUPTED = """
+import os, signal, sys, catoptra
+
+def interrupt(stored, wanted):
+    if stored == 20:
+        os.kill(os.getpid(), signal.SIGINT)
+
+try:
+    catoptra.batch.run(sys.argv[1], sys.argv[2], jobs=2, progress=interrupt)
+    print("finished")
+except KeyboardInterrupt:
+    print("interrupted")
+again = catoptra.batch.run(sys.argv[1], sys.argv[2])  # the same process can go on: nothing holds the database
+print(again.done, again.failed)
+"""
+
+
+def test_ctrl_c_stops_a_run_and_loses_no_row(tmp_path):
+    plan = tmp_path / "plan.toml"
+    plan.write_text(PLAN.format(step=0.25) + '[[poses]]\nmode = "as-worn"\npanto_deg = { from = 0, to = 9, step = 1 }\n')
+    database = tmp_path / "interrupted.sqlite"
+    ran = subprocess.run([sys.executable, "-c", INTERRUPTED, plan, database], capture_output=True, text=True, timeout=600)
+    assert ran.returncode == 0, ran.stderr
+    told, rest = ran.stdout.splitlines()
+    assert told == "interrupted"
+    wanted = len(catoptra._core.read_batch_plan(plan))
+    done, failed = map(int, rest.split())
+    assert failed == 0 and 0 < done <= wanted - 20, "what was stored before Ctrl-C is not computed again"
+    catoptra.batch.run(plan, tmp_path / "calm.sqlite")
+    assert export(database) == export(tmp_path / "calm.sqlite")
+
+
 class Cluster:
     """A scheduler and two workers as processes of their own, as on a cluster."""
 

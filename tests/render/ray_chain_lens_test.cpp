@@ -114,8 +114,8 @@ TEST(RayChainLens, MirrorBehindALensFollowsTheExactPath) {
       ASSERT_EQ(path.end, optics::LensPathEnd::passed);
       const glm::dvec3 o = path.exit.position_mm - center;
       const double b = glm::dot(o, path.outside);
-      const glm::dvec3 at = path.exit.position_mm + (-b - std::sqrt(b * b - glm::dot(o, o) + kRadius * kRadius)) *
-                                                        path.outside;
+      const glm::dvec3 at =
+          path.exit.position_mm + (-b - std::sqrt(b * b - glm::dot(o, o) + kRadius * kRadius)) * path.outside;
       const glm::dvec3 direction = optics::reflect(path.outside, (at - center) / kRadius);
       EXPECT_LT(glm::length(glm::dvec3(frame.surface[i]) - at), 5e-5);
       EXPECT_LT(glm::length(glm::dvec3(frame.direction[i]) - direction), 3e-7);
@@ -160,7 +160,7 @@ TEST(RayChainLens, LensBehindALensFollowsTheExactPath) {
 TEST(RayChainLens, LightSplitsAtTheFirstLensWithSeveralWavelengths) {
   Scene scene = room_behind_lens(70, 0.5);
   scene.optics.push_back(lens_of(400, 95.2, 2, 60, 25, 1));
-  scene.optics.push_back(moved(lens_of(120, -300, 6, 90, 25, 3, optics::abbe_medium(1.7, 20)), 50));
+  scene.optics.push_back(moved(lens_of(400, 120, 2, 90, 25, 3, optics::abbe_medium(1.7, 20)), 50));
   const Frame one = rendered(scene).frame;
   scene.optics[0].wavelengths = 3;
   const Frame three = rendered(scene).frame;
@@ -182,8 +182,10 @@ TEST(RayChainLens, OpticsThatDoNotSeeThemselvesShowTheSameAtEveryDepth) {
     if (which == 0) scene.optics.push_back(lens_of(95.2, 400, 6, 60, 9));
     if (which == 1) scene.optics.push_back(lens_of(400, 95.2, 2, 60, 9));
     if (which == 2) scene.optics.push_back(lens_of(120, -120, 12, 60, 9, 3, optics::abbe_medium(1.6, 30)));
-    if (which == 3) scene.optics.push_back(facing(conic_mirror(-600, 0, 80, 80, 7, 7), {20, 0, 60}, {0, 0, -1}));
-    if (which == 4) scene.optics.push_back(facing(conic_mirror(300, 0, 80, 80, 7, 7), {20, 0, 60}, {0, 0, -1}));
+    if (which == 3)
+      scene.optics.push_back(facing(conic_mirror(-600, 0, 80, 80, 7, 7), {20, 0, 60}, {0, 0, -1}));
+    if (which == 4)
+      scene.optics.push_back(facing(conic_mirror(300, 0, 80, 80, 7, 7), {20, 0, 60}, {0, 0, -1}));
     scene.settings.depth = 1;
     const RenderResult one = rendered(scene);
     scene.settings.depth = 4;

@@ -205,8 +205,8 @@ TEST(RayChain, PlaneAndSphereMirrorMagnifyAsTheMirrorEquationSays) {
     const auto at = [&](int column, int row) { return std::size_t(row * 320 + column); };
     const std::size_t a = at(60, 120), b = at(260, 120);
     ASSERT_EQ(frame.path[a], path_by({0, 1, 0}));
-    const double seen =
-        (frame.position[b].y - frame.position[a].y) / (rays.direction(260, 120).y - rays.direction(60, 120).y);
+    const double seen = (frame.position[b].y - frame.position[a].y) /
+                        (rays.direction(260, 120).y - rays.direction(60, 120).y);
     const double arm = kEyeToPlane + kPlaneToSphere, back = kPlaneToSphere + kWall;
     const double wanted = arm + back * (1 + 2 * arm / radius);
     EXPECT_NEAR(seen / wanted, 1, 1e-4) << radius;
@@ -246,14 +246,15 @@ TEST(RayChain, HollowMirrorSeesItselfAsTheSphereSays) {
   int different = 0;
   for (std::size_t i = 0; i < frame.color.size(); ++i) {
     if (frame.optic_id[i] < 0) continue;
-    const auto wanted = bounces_in_sphere(scene.camera.eye_mm, ray_of(scene.camera, kWidth, kHeight, i),
-                                          kRadius, 100, 30, 6);
+    const auto wanted =
+        bounces_in_sphere(scene.camera.eye_mm, ray_of(scene.camera, kWidth, kHeight, i), kRadius, 100, 30, 6);
     ++counts[wanted.count];
     if (frame.bounces[i] != wanted.count) {
       ++different;
       continue;
     }
-    EXPECT_LT(glm::length(glm::dvec3(frame.surface[i]) - wanted.surface), 2e-4) << "errors grow 3-fold a bounce";
+    EXPECT_LT(glm::length(glm::dvec3(frame.surface[i]) - wanted.surface), 2e-4)
+        << "errors grow 3-fold a bounce";
     EXPECT_LT(glm::length(glm::dvec3(frame.direction[i]) - wanted.direction), 2e-6);
   }
   EXPECT_GT(counts[1], 1000);

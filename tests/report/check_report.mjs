@@ -35,6 +35,20 @@ for (const [device, width, height] of [["laptop", 1366, 768], ["phone", 390, 844
       return {name: plot.getAttribute("aria-label"), width: box?.width || 0, height: box?.height || 0,
               marks: plot.querySelectorAll(".plot path, .cartesianlayer path, .cartesianlayer image").length};
     }),
+    // Tick labels that meet read as one number; a whole pixel of overlap counts.
+    meeting: [...document.querySelectorAll(".plot")].flatMap((plot) => {
+      const ticks = [...plot.querySelectorAll(".xtick text, .ytick text")].map((t) => ({text: t.textContent, box: t.getBoundingClientRect()}));
+      return ticks.flatMap((a, i) => ticks.slice(i + 1)
+        .filter((b) => Math.min(a.box.right, b.box.right) - Math.max(a.box.left, b.box.left) > 1 &&
+                       Math.min(a.box.bottom, b.box.bottom) - Math.max(a.box.top, b.box.top) > 1)
+        .map((b) => `${plot.getAttribute("aria-label")}: ${a.text} and ${b.text}`));
+    }),
+    // Maps whose points fill a circle end at it, not along the steps of their grid: one shape, and values up to it all round.
+    ragged: [...document.querySelectorAll(".plot")].filter((plot) => plot.data?.[0]?.type === "contour").filter((plot) => {
+      const {x, y, z} = plot.data[0], corner = [z[0], z[z.length - 1]].some((row) => [row[0], row[row.length - 1]].includes(null));
+      const sides = [z[0][x.length >> 1], z[y.length - 1][x.length >> 1], z[y.length >> 1][0], z[y.length >> 1][x.length - 1]];
+      return corner && sides.every((v) => v !== null) && Math.abs(x[0] - y[0]) < 1e-6 && !plot.layout.shapes?.length;
+    }).map((plot) => plot.getAttribute("aria-label")),
     wider: document.documentElement.scrollWidth - document.documentElement.clientWidth,
     smallest: Math.min(...[...document.querySelectorAll("p, td, th, dd, dt, figcaption, li, h1, h2, h3")]
       .filter((node) => node.textContent.trim()).map((node) => parseFloat(getComputedStyle(node).fontSize))),
@@ -45,6 +59,8 @@ for (const [device, width, height] of [["laptop", 1366, 768], ["phone", 390, 844
   expect(seen.ready === seen.plots.length, `${device}: ${seen.ready} of ${seen.plots.length} plots were drawn`);
   for (const plot of seen.plots)
     expect(plot.marks > 0 && plot.width > 150 && plot.height > 150, `${device}: plot '${plot.name}' is empty (${plot.marks} marks, ${plot.width} x ${plot.height})`);
+  for (const pair of seen.meeting) expect(false, `${device}: tick labels meet in ${pair}`);
+  for (const name of seen.ragged) expect(false, `${device}: the map '${name}' of points within a circle has a ragged edge`);
   expect(seen.wider <= 0, `${device}: the page is ${seen.wider} px wider than the window`);
   expect(seen.smallest >= 12, `${device}: text of ${seen.smallest} px`);
   for (const natural of seen.pictures) expect(natural > 0, `${device}: a picture does not load`);

@@ -56,6 +56,8 @@ def run(
 
     client: a dask.distributed client; None: this machine's cores, `jobs` of them (0: all).
     progress: called with the cases stored so far in this run, and those wanted.
+
+    Ctrl-C raises KeyboardInterrupt once the cases in hand are stored; the same call goes on from there.
     """
     read = _core.read_batch_plan(plan)
     store = _core.BatchStore(database)

@@ -3,7 +3,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
+#include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 
 #include "app/batch.h"
@@ -11,6 +14,39 @@
 
 namespace catoptra::python {
 namespace py = pybind11;
+
+namespace {
+
+/// How long Ctrl-C may wait for a look.
+constexpr std::chrono::milliseconds kGlance{50};
+
+/// Runs the batch on a thread of its own, so that this one (Python runs signal handlers in its main thread
+/// only) can look for Ctrl-C. What was computed by then is stored before the exception leaves. Without the
+/// interpreter's lock.
+app::BatchProgress run_interruptibly(const app::BatchPlan& plan, app::BatchStore& store, std::size_t jobs,
+                                     const std::function<void(std::size_t, std::size_t)>& progress) {
+  std::atomic<bool> stop = false;
+  app::BatchRunOptions options;
+  options.jobs = jobs;
+  options.stop = &stop;
+  if (progress)
+    options.progress = [&](const app::BatchProgress& p) { progress(p.done + p.failed, p.wanted); };
+  auto running = std::async(std::launch::async, [&] { return app::run_batch(plan, store, options); });
+  while (running.wait_for(kGlance) != std::future_status::ready) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() == 0) continue;
+    stop = true;
+    const py::error_already_set interrupt;  // takes the exception, usually KeyboardInterrupt
+    {
+      const py::gil_scoped_release release;
+      running.wait();
+    }
+    throw interrupt;
+  }
+  return running.get();
+}
+
+}  // namespace
 
 void bind_batch(py::module_& module) {
   py::class_<app::BatchPlan>(module, "BatchPlan", "A plan with its cases, each once, in the plan's order.")
@@ -65,15 +101,12 @@ void bind_batch(py::module_& module) {
       [](const app::BatchPlan& plan, app::BatchStore& store, std::size_t jobs,
          const std::function<void(std::size_t, std::size_t)>& progress) {
         const py::gil_scoped_release release;
-        app::BatchRunOptions options;
-        options.jobs = jobs;
-        if (progress)
-          options.progress = [&](const app::BatchProgress& p) { progress(p.done + p.failed, p.wanted); };
-        const app::BatchProgress ran = app::run_batch(plan, store, options);
+        const app::BatchProgress ran = run_interruptibly(plan, store, jobs, progress);
         return std::pair(ran.done, ran.failed);
       },
       py::arg("plan"), py::arg("store"), py::arg("jobs") = 0, py::arg("progress") = py::none(),
-      "Computes what is pending on this machine's cores; returns how many were done and how many failed.");
+      "Computes what is pending on this machine's cores; returns how many were done and how many failed. "
+      "Ctrl-C ends it once the cases in hand are stored.");
 }
 
 }  // namespace catoptra::python
