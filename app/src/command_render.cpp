@@ -54,6 +54,7 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
   if (result.choice) json["choice"] = choice_json(*result.choice);
   json.update({{"samples", options.samples},
                {"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats, nullptr)},
+               {"maps", maps_json(result.stats)},
                {"rays", result.stats.rays},
                {"time_ms", result.stats.time_ms},
                {"warnings", warnings},

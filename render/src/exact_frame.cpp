@@ -38,7 +38,8 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
     trace_ms = gl_time_ms([&] {
       FrameOptions without_geometry = options;
       without_geometry.geometry = false;
-      pvrr_.update(camera, without_geometry);
+      // Where a ray meets another optic the tracer follows it: optics in optics need no maps.
+      pvrr_.update(camera, without_geometry, 1);
     });
     for (int sample = 0; sample < options.samples; ++sample) {
       pass1_ms += gl_time_ms([&] {

@@ -75,7 +75,7 @@ void PvrrMap::bind_optic_depth() const {
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
                    const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px,
-                   bool geometry, Overlay* overlay) {
+                   bool geometry, Overlay* overlay, const NestedOptics* nested) {
   const AtlasPlace& place = layout_.places[patch];
   const glm::ivec2 size = place.texels + 2 * place.guard;
   const optics::VirtualView guarded = with_guard(view, place.texels, place.guard);
@@ -101,7 +101,13 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   }
   target_->bind(geometry);
-  scene.draw(ahead, pass);
+  scene.clear(ahead, pass);
+  if (nested && !nested->optics.empty()) {
+    pass.nested = nested->optics;
+    nested->draw(ahead, pass, *target_);
+  }
+  scene.draw_all(ahead, pass);
+  pass.nested = {};
   if (overlay) {
     target_->bind(false);
     overlay->draw_in_scene(ahead, pass.clip_depth);

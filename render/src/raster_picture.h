@@ -14,7 +14,8 @@ namespace catoptra::render {
 /// Kept from frame to frame, so that textures are made again only where the size changes.
 class RasterPicture {
  public:
-  RasterPicture();
+  /// Of a scene with `optic_count` optics.
+  explicit RasterPicture(std::size_t optic_count);
 
   /// Starts a picture of the options' size, with no sample yet.
   void begin(const FrameOptions& options);
@@ -23,7 +24,8 @@ class RasterPicture {
   /// Takes over what the target holds as one of options.samples equally weighted samples.
   void add_sample();
 
-  /// Sets position, surface, direction and optic_id of `frame` to what the target holds of them.
+  /// Sets position, surface, direction, optic_id, bounces and path of `frame` to what the target holds of
+  /// them.
   void read_geometry(Frame& frame) const;
 
   /// The mean of the samples.
@@ -33,6 +35,7 @@ class RasterPicture {
   [[nodiscard]] Frame read_back() const;
 
  private:
+  std::size_t optic_count_;
   FrameOptions options_;
   std::unique_ptr<RasterTarget> target_;
   GlTexture sum_;  ///< RGBA32F, only with several samples

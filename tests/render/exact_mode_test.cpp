@@ -127,7 +127,7 @@ TEST(ExactMode, TracedPixelsAreThoseOfTheReference) {
     ASSERT_EQ(exact.color[i], reference.color[i]);
     ASSERT_EQ(exact.position[i], reference.position[i]);
   }
-  EXPECT_GT(traced, 100u);
+  EXPECT_GT(traced, 20u) << "of the few that no patch's map shows";
 }
 
 TEST(ExactMode, PlaneMirrorTracesNothing) {

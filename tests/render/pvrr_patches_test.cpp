@@ -11,6 +11,7 @@
 #include "render/src/patch_mesh.h"
 #include "render/src/patch_tree.h"
 #include "render/src/pvrr_atlas.h"
+#include "render/src/wrong_share.h"
 #include "tests/render/lens_pvrr_scene.h"
 #include "tests/render/raster_test_scene.h"
 
@@ -289,7 +290,10 @@ TEST(Patches, ModeExactIsRightWithThem) {
   const auto traced = renderer.render(Mode::raytrace, scene.camera, picture_of(scene));
   const auto error = compare(traced.frame, exact.frame, scene).optics.at(0);
   EXPECT_LT(error.screen_px.p999, 0.5);
-  EXPECT_LT(double(error.occlusion_pixels), 0.001 * double(error.pixels));
+  EXPECT_EQ(wrong_share(traced.frame, exact.frame), 0);
+  // The comparison takes the normal of what is met from the pixels beside it: at a crease it is another
+  // face's.
+  EXPECT_LT(double(error.occlusion_pixels), 0.002 * double(error.pixels));
 }
 
 TEST(Atlas, MapsAndTheirGuardsDoNotOverlap) {
