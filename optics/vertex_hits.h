@@ -3,6 +3,7 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "optics/lens_path.h"
@@ -18,6 +19,16 @@ struct RayDifferential {
   glm::dmat3 point{0};      ///< of `surface_point_mm`
   glm::dmat3 direction{0};  ///< of `direction`, 1/mm
 };
+
+/// How light travels, against its direction, to a point of an optic: straight from the eye, or by way of
+/// other optics.
+struct Arrival {
+  glm::dvec3 origin_mm{0};  ///< the eye, or the last point on another optic; the ray passes it and the point
+  glm::dvec3 direction{0};  ///< unit, from there to the point
+  glm::dmat3 turn{0};       ///< change of `direction` per mm by which the point moves across it, 1/mm
+};
+
+[[nodiscard]] Arrival arrival_from_eye(const glm::dvec3& eye_mm, const glm::dvec3& point_mm);
 
 struct VertexHit {
   glm::dvec3 surface_point_mm{0};  ///< last point on the optic: a mirror's vertex itself, a lens's exit point
@@ -50,6 +61,9 @@ inline constexpr double kSelfHitDistance_mm = 0.01;
 /// One such ray, through any point of the mirror, for which `vertex` holds what a vertex would.
 [[nodiscard]] VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror,
                                        const glm::dvec3& eye_mm);
+/// The same for light that has come another way; `arrival`: at the vertex.
+[[nodiscard]] VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror,
+                                       const Arrival& arrival);
 
 /// The refracted ray of each vertex of the entered side's mesh, in its order, without scene hits: exact on
 /// both surfaces. Depends on nothing but the positions of eye and lens, so a renderer keeps it while those
@@ -57,11 +71,18 @@ inline constexpr double kSelfHitDistance_mm = 0.01;
 [[nodiscard]] std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer,
                                                       LensSide entered, double wavelength_nm,
                                                       const glm::dvec3& eye_mm);
+/// The same with one arrival per vertex.
+[[nodiscard]] std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer,
+                                                      LensSide entered, double wavelength_nm,
+                                                      std::span<const Arrival> arrivals);
 
 /// One such ray, through any point of the entered side, for which `vertex` holds what a vertex would.
 [[nodiscard]] VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens,
                                        const LensTracer& tracer, LensSide entered, const LensIndices& indices,
                                        const glm::dvec3& eye_mm);
+[[nodiscard]] VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens,
+                                       const LensTracer& tracer, LensSide entered, const LensIndices& indices,
+                                       const Arrival& arrival);
 
 /// The same rays with their hits among the surroundings of `scene`; former hits are replaced.
 [[nodiscard]] std::vector<VertexHit> find_scene_hits(std::vector<VertexHit> rays, const RayScene& scene);

@@ -27,7 +27,8 @@ struct Frame {
   std::vector<std::uint8_t> bounces;   ///< optics along the path; empty: 1 wherever an optic shows
   std::vector<std::uint32_t> path;     ///< which ones, in order: see path_after(); empty: optic_id alone
 
-  std::vector<std::uint8_t> retraced;  ///< mode exact: 1 where an optic shows what no map knows and was traced
+  std::vector<std::uint8_t>
+      retraced;  ///< mode exact: 1 where an optic shows what no map knows and was traced
 };
 
 /// The number of a path that goes on by optic `optic` after the path numbered `path`; 0 is a path without
@@ -63,13 +64,24 @@ struct OpticStats {
   std::size_t shown_pixels = 0, retraced_pixels = 0;
 };
 
+/// Mode pvrr: one optic's reflection or refraction maps, of an optic in the picture or in another one's map.
+struct MapStats {
+  std::string way;     ///< names of the optics from the eye on, joined by " > "; the map is the last one's
+  int level = 1;       ///< number of optics on that way
+  bool drawn = false;  ///< in this frame; false: kept
+  std::size_t texels = 0;
+  std::size_t rays = 0;        ///< reflected or refracted for it in this frame
+  std::size_t scene_rays = 0;  ///< sent into the scene from there
+};
+
 /// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
   std::vector<OpticStats> optics;
   std::map<std::string, double> time_ms;
   std::size_t rays = 0;  ///< all rays of the frame
-  int samples = 1;       ///< per pixel in the picture; above 1, all numbers above are sums over them
+  int samples = 1;       ///< per pixel in the picture; above 1, all counts and times are sums over them
+  std::vector<MapStats> maps;  ///< mode pvrr: all maps, level by level
 };
 
 struct RenderResult {

@@ -70,6 +70,7 @@ ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
           {"frame_ms", {{"min", *least}, {"median", timing.median_ms()}, {"max", *most}}},
           {"rays_per_frame", timing.rays_per_frame},
           {"vertices", timing.vertices},
+          {"maps", timing.maps},
           {"speedup_vs_raytrace", raytrace_ms / timing.median_ms()},
           {"time_ms", pass_json(timing)}};
 }

@@ -76,6 +76,7 @@ ModeResult compare_mode(Session& session, render::Mode mode, const render::Frame
                 folder / ("error_" + name + ".png"), false);
   compared.json = {{"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats,
                                           &compared.comparison.optics)},
+                   {"maps", maps_json(result.stats)},
                    {"image", image_json(compared.comparison.image)},
                    {"time_ms", time_json(compared.timing)}};
   if (result.choice) compared.json["choice"] = choice_json(*result.choice);

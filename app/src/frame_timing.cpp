@@ -4,6 +4,8 @@
 #include <chrono>
 #include <vector>
 
+#include "app/src/report.h"
+
 namespace catoptra::app {
 namespace {
 
@@ -43,6 +45,7 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
     timing.rays_per_frame = result.stats.rays;
     timing.vertices = 0;
     for (const render::OpticStats& optic : result.stats.optics) timing.vertices += optic.vertices;
+    timing.maps = maps_json(result.stats);
     timing.choice = result.choice;
   }
   progress.clear();

@@ -19,6 +19,7 @@ struct FrameTiming {
   std::map<std::string, std::vector<double>> pass_ms;  ///< each entry of FrameStats::time_ms, one per frame
   std::size_t rays_per_frame = 0;
   std::size_t vertices = 0;                  ///< of all optics' meshes as drawn last
+  nlohmann::ordered_json maps;               ///< maps_json() of the last frame
   std::optional<render::ModeChoice> choice;  ///< mode automatic: of the last frame
 
   [[nodiscard]] double median_ms() const;

@@ -71,6 +71,18 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
   return entries;
 }
 
+ordered_json maps_json(const render::FrameStats& stats) {
+  ordered_json maps = ordered_json::array();
+  for (const render::MapStats& map : stats.maps)
+    maps.push_back({{"way", map.way},
+                    {"level", map.level},
+                    {"drawn", map.drawn},
+                    {"texels", map.texels},
+                    {"rays", map.rays},
+                    {"scene_rays", map.scene_rays}});
+  return maps;
+}
+
 ordered_json choice_json(const render::ModeChoice& choice) {
   ordered_json costs = ordered_json::array();
   for (const render::ModeCost& cost : choice.costs)

@@ -12,15 +12,14 @@ glm::dvec3 normal_change(const LocalSurface& s, const glm::dvec3& d_point) {
 
 }  // namespace
 
-RayDifferential arriving_differential(const glm::dvec3& from_eye, double distance_mm,
-                                      const glm::dvec3& normal) {
-  const glm::dvec3& d = from_eye;
+RayDifferential arriving_differential(const Arrival& arrival, const glm::dvec3& normal) {
+  const glm::dvec3& d = arrival.direction;
   const double cosine = glm::dot(d, normal);
   RayDifferential at;
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec3 move{0};
     move[axis] = 1;
-    at.direction[axis] = (move - d[axis] * d) / distance_mm;
+    at.direction[axis] = arrival.turn[axis];
     at.point[axis] = move - d * (normal[axis] / cosine);  // back into the tangent plane along the ray
   }
   return at;

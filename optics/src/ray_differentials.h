@@ -14,9 +14,8 @@ struct LocalSurface {
   glm::dvec3 direction1{0};  ///< of k1; k2 goes with cross(normal, direction1)
 };
 
-/// The eye's ray where it meets a surface: `moved` of it per mm across.
-[[nodiscard]] RayDifferential arriving_differential(const glm::dvec3& from_eye, double distance_mm,
-                                                    const glm::dvec3& normal);
+/// A ray where it meets a surface: `moved` of it per mm across.
+[[nodiscard]] RayDifferential arriving_differential(const Arrival& arrival, const glm::dvec3& normal);
 
 /// The same ray `length_mm` further on, where it meets a surface of unit normal `normal`.
 [[nodiscard]] RayDifferential transferred(const RayDifferential& ray, const glm::dvec3& direction,

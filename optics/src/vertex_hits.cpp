@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "cad_import/error.h"
 #include "optics/reflection.h"
@@ -24,31 +25,40 @@ LocalSurface surface_at(std::span<const cad_import::Face> faces, const ExactHit&
   return {hit.normal, curvature.k1, curvature.k2, curvature.direction1};
 }
 
-// The eye's ray to a vertex.
-struct Arrival {
+VertexHit arrived(const tessellate::OpticVertex& vertex, const Arrival& arrival) {
   VertexHit hit;
-  double distance_mm = 0;
-};
-
-Arrival arrive(const tessellate::OpticVertex& vertex, const glm::dvec3& eye_mm) {
-  Arrival arrival;
-  const glm::dvec3 towards = vertex.position_mm - eye_mm;
-  arrival.distance_mm = glm::length(towards);
-  arrival.hit.surface_point_mm = vertex.position_mm;
-  arrival.hit.from_eye = towards / arrival.distance_mm;
-  return arrival;
+  hit.surface_point_mm = vertex.position_mm;
+  hit.from_eye = arrival.direction;
+  return hit;
 }
 
 }  // namespace
 
+Arrival arrival_from_eye(const glm::dvec3& eye_mm, const glm::dvec3& point_mm) {
+  const glm::dvec3 towards = point_mm - eye_mm;
+  const double distance = glm::length(towards);
+  Arrival arrival{eye_mm, towards / distance, glm::dmat3(0)};
+  const glm::dvec3& d = arrival.direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 move{0};
+    move[axis] = 1;
+    arrival.turn[axis] = (move - d[axis] * d) / distance;
+  }
+  return arrival;
+}
+
 VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror,
                          const glm::dvec3& eye_mm) {
-  auto [hit, distance] = arrive(vertex, eye_mm);
+  return reflect_vertex(vertex, mirror, arrival_from_eye(eye_mm, vertex.position_mm));
+}
+
+VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mirror, const Arrival& arrival) {
+  VertexHit hit = arrived(vertex, arrival);
   hit.faces_eye = glm::dot(hit.from_eye, reflecting_normal(mirror, vertex.normal)) < 0;
   if (!hit.faces_eye) return hit;
   hit.direction = reflect(hit.from_eye, vertex.normal);
-  hit.differential = reflected(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
-                               surface_at(vertex));
+  hit.differential =
+      reflected(arriving_differential(arrival, vertex.normal), hit.from_eye, surface_at(vertex));
   return hit;
 }
 
@@ -64,12 +74,18 @@ std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& e
 
 VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens, const LensTracer& tracer,
                          LensSide entered, const LensIndices& indices, const glm::dvec3& eye_mm) {
-  auto [hit, distance] = arrive(vertex, eye_mm);
+  return refract_vertex(vertex, lens, tracer, entered, indices, arrival_from_eye(eye_mm, vertex.position_mm));
+}
+
+VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& lens, const LensTracer& tracer,
+                         LensSide entered, const LensIndices& indices, const Arrival& arrival) {
+  VertexHit hit = arrived(vertex, arrival);
+  const double distance = glm::distance(arrival.origin_mm, vertex.position_mm);
   hit.end = LensPathEnd::missed;
   hit.transmittance = 0;
   if (!(glm::dot(hit.from_eye, vertex.normal) < 0)) return hit;
   const ExactHit entry{distance, vertex.position_mm, vertex.normal, vertex.face, vertex.uv, 0};
-  const LensPath path = tracer.trace_from({eye_mm, hit.from_eye}, entry, entered, indices);
+  const LensPath path = tracer.trace_from({arrival.origin_mm, hit.from_eye}, entry, entered, indices);
   hit.end = path.end;
   if (path.end != LensPathEnd::passed) return hit;
   hit.faces_eye = true;
@@ -78,8 +94,8 @@ VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& len
   hit.transmittance = path.transmittance;
   const LocalSurface exit = surface_at(side_of(lens, other_side(entered)).faces, path.exit);
   const double inwards = indices.around / indices.lens;
-  const auto inside = refracted(arriving_differential(hit.from_eye, distance, vertex.normal), hit.from_eye,
-                                path.inside, inwards, surface_at(vertex));
+  const auto inside = refracted(arriving_differential(arrival, vertex.normal), hit.from_eye, path.inside,
+                                inwards, surface_at(vertex));
   hit.differential = refracted(transferred(inside, path.inside, path.exit.t_mm, exit.normal), path.inside,
                                path.outside, 1 / inwards, exit);
   return hit;
@@ -88,12 +104,24 @@ VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& len
 std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
                                         double wavelength_nm, const glm::dvec3& eye_mm) {
   if (lens.kind != OpticKind::lens) throw Error("", lens.name, "is a mirror, and light does not pass it");
+  std::vector<Arrival> arrivals;
+  for (const auto& vertex : side_of(lens, entered).mesh->vertices)
+    arrivals.push_back(arrival_from_eye(eye_mm, vertex.position_mm));
+  return refract_vertices(lens, tracer, entered, wavelength_nm, arrivals);
+}
+
+std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
+                                        double wavelength_nm, std::span<const Arrival> arrivals) {
   const auto& vertices = side_of(lens, entered).mesh->vertices;
+  if (arrivals.size() != vertices.size())
+    throw Error(
+        "", lens.name,
+        std::to_string(arrivals.size()) + " arrivals for " + std::to_string(vertices.size()) + " vertices");
   const LensIndices indices = lens_indices(lens, wavelength_nm);
   std::vector<VertexHit> hits(vertices.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), kVerticesPerTask), [&](const auto& some) {
     for (std::size_t i = some.begin(); i < some.end(); ++i)
-      hits[i] = refract_vertex(vertices[i], lens, tracer, entered, indices, eye_mm);
+      hits[i] = refract_vertex(vertices[i], lens, tracer, entered, indices, arrivals[i]);
   });
   return hits;
 }

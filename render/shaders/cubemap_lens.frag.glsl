@@ -19,6 +19,6 @@ void main() {
   vec3 direction = v_shown[0].xyz;
   vec4 shown = point_on_ray(cube_center, direction, cube_center, textureLod(map_position, direction, 0.0),
                             textureLod(map_normal, direction, 0.0).xyz);
-  write_lens_geometry(open && v_shown[0].w > 0.0, shown);
+  write_lens_geometry(open && v_shown[0].w > 0.0, shown, vec4(v_exit.xyz + origin.xyz, 0.0));
 #endif
 }

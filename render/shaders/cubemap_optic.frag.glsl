@@ -20,6 +20,6 @@ void main() {
 #ifdef GEOMETRY
   vec4 shown = point_on_ray(cube_center, direction, cube_center, textureLod(map_position, direction, 0.0),
                             textureLod(map_normal, direction, 0.0).xyz);
-  write_optic_geometry(reflects, shown, v_relative);
+  write_optic_geometry(reflects, shown, vec4(v_relative + origin.xyz, 0.0), v_relative);
 #endif
 }

@@ -1,4 +1,5 @@
-// PVRR pass 2 (paper 3.1, step 4): the optic with its reflection map. Variant: GEOMETRY.
+// PVRR pass 2 (paper 3.1, step 4): the optic with its reflection map, in the picture or in the map of another optic (paper
+// 4.4). Variants: GEOMETRY, IN_MAP, CLIP_AGAINST_OPTIC.
 // Needs raster_view.glsl, raster_shading.glsl, raster_shown.glsl, raster_optic.glsl.
 
 in vec3 v_relative;
@@ -18,7 +19,9 @@ layout(location = 8) uniform mat3 map_ray_origin;
 layout(location = 9) uniform mat3 map_ray_direction;
 #endif
 
+#ifndef IN_MAP
 layout(binding = 0, offset = 0) uniform atomic_uint outside_map;
+#endif
 
 void main() {
   vec2 st = v_texture.xy / v_texture.z;
@@ -32,16 +35,18 @@ void main() {
     seen = textureLod(map_color, at, 0.0).rgb;
   } else {
     seen = sky(direction);
+#ifndef IN_MAP
     if (reflects) atomicCounterIncrement(outside_map);
+#endif
   }
   write_optic_color(reflects, seen, v_relative, v_normal);
 #ifdef GEOMETRY
-  vec4 shown = vec4(normalize(direction), 0.0);
-  if (inside) {
-    vec3 ray = map_ray_direction * vec3(1.0, st);
-    shown = point_on_ray(map_ray_origin * vec3(1.0, st), ray, v_relative + origin.xyz,
-                         textureLod(map_position, at, 0.0), textureLod(map_normal, at, 0.0).xyz);
-  }
-  write_optic_geometry(reflects, shown, v_relative);
+  vec3 surface = v_relative + origin.xyz;
+  vec4 shown = vec4(normalize(direction), 0.0), last = vec4(surface, 0.0);
+  if (inside)
+    shown = shown_in_map(map_position, map_normal, at, map_ray_origin * vec3(1.0, st),
+                         map_ray_direction * vec3(1.0, st), surface, last);
+  write_optic_geometry(reflects, shown, last, v_relative);
 #endif
+  if (behind_optic()) discard;
 }

@@ -18,9 +18,11 @@ vec3 transmitted(bool passes, int k, vec3 seen) { return weight[k] * (passes ? v
 
 #ifdef GEOMETRY
 /// `shown`: by one wavelength, in pictures the reference wavelength, which is the first.
-void write_lens_geometry(bool passes, vec4 shown) {
+/// `last`: as shown_in_map() gives it.
+void write_lens_geometry(bool passes, vec4 shown, vec4 last) {
   // Where nothing is seen through it, the lens counts as a body like any other.
   out_position = passes ? shown : vec4(v_relative + origin.xyz, 1.0);
-  out_detail = passes ? vec4(v_exit.xyz + origin.xyz, optic_id + 1.0) : vec4(0.0);
+  vec4 body = body_detail(v_relative);
+  out_detail = passes ? passed_detail(last) : body;
 }
 #endif

@@ -6,11 +6,12 @@ layout(location = 4) uniform bool front_reflects;
 layout(location = 5) uniform float back_albedo;
 
 #ifdef GEOMETRY
-void write_optic_geometry(bool reflects, vec4 shown, vec3 relative) {
-  vec3 surface = relative + origin.xyz;
-  out_position = reflects ? shown : vec4(surface, 1.0);
+/// `last`: as shown_in_map() gives it.
+void write_optic_geometry(bool reflects, vec4 shown, vec4 last, vec3 relative) {
   // The side that does not reflect counts as a body like any other.
-  out_detail = reflects ? vec4(surface, optic_id + 1.0) : vec4(0.0);
+  vec4 body = body_detail(relative);
+  out_position = reflects ? shown : vec4(relative + origin.xyz, 1.0);
+  out_detail = reflects ? passed_detail(last) : body;
 }
 #endif
 

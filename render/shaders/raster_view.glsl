@@ -15,6 +15,6 @@ layout(std140, binding = 0) uniform View {
   vec4 sky_x;       // ... and its change by one unit of normalised device x ...
   vec4 sky_y;       // ... and y
   vec4 sky_color;   // rgb
-  vec4 parameters;  // level-of-detail bias, ambient irradiance, unused, unused
+  vec4 parameters;  // level-of-detail bias, ambient irradiance, base of ways, limit of ways
   Light lights[kMaxLights];
 };

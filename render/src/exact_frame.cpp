@@ -40,7 +40,8 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
       FrameOptions without_geometry = options;
       without_geometry.geometry = false;
       without_geometry.multisample = 1;  // colours of maps go with the depths of their texels
-      pvrr_.update(camera, without_geometry);
+      // Where a ray meets another optic the tracer follows it: optics in optics need no maps.
+      pvrr_.update(camera, without_geometry, 1);
     });
     pass1_ms = gl_time_ms([&] {
       pvrr_.draw_maps(camera.offset_px, false, nullptr);

@@ -134,10 +134,19 @@ LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& t
 
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm, optics::LensSide entered) {
+  std::vector<optics::Arrival> arrivals;
+  for (const auto& vertex : optics::side_of(lens, entered).mesh->vertices)
+    arrivals.push_back(optics::arrival_from_eye(eye_mm, vertex.position_mm));
+  return refract_eye_rays(lens, tracer, eye_mm, entered, arrivals);
+}
+
+LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
+                          const glm::dvec3& eye_mm, optics::LensSide entered,
+                          std::span<const optics::Arrival> arrivals) {
   LensRays rays{entered, samples_of(lens), {}, {}, {}};
   const auto& mesh = *optics::side_of(lens, rays.entered).mesh;
   for (const optics::SpectralSample& sample : rays.samples) {
-    auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, eye_mm);
+    auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, arrivals);
     for (int ring = 0; ring < kContinuedRings; ++ring) continue_beyond_border(mesh, hits);
     auto& open = rays.open.emplace_back();
     for (std::size_t i = 0; i < hits.size(); ++i)

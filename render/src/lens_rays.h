@@ -50,6 +50,10 @@ struct LensRays {
 /// The same from a given side.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm, optics::LensSide entered);
+/// The same of light that comes to the vertices of that side by other optics, about as if from `eye_mm`.
+[[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
+                                        const glm::dvec3& eye_mm, optics::LensSide entered,
+                                        std::span<const optics::Arrival> arrivals);
 
 /// Closes vertices whose ray, continued beyond the border, has no place in the map. `patch`: per vertex,
 /// which of `views` is its map's; empty: the first.

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "render/src/lens_rays.h"
-#include "render/src/raster_optic_uniforms.h"
 #include "render/src/sampling.h"
 #include "render/src/view_warnings.h"
 
@@ -31,43 +30,34 @@ double length_in_map(const optics::VirtualView& view, const PvrrMapSize& size, c
 
 PvrrFrame::PvrrFrame(const Scene& scene, RasterScene& raster, const optics::RayScene& rays,
                      const cad_import::BoundingBox& bounds)
-    : scene_(scene), raster_(raster) {
-  for (std::size_t i = 0; i < scene.optics.size(); ++i) optics_.emplace_back(scene, i, raster, rays, bounds);
+    : scene_(scene), raster_(raster), stack_(scene, raster, rays, bounds) {
   outside_counter_ =
       make_dynamic_buffer(sizeof(std::uint32_t) * std::max<std::size_t>(1, scene.optics.size()));
 }
 
 void PvrrFrame::optic_changed(std::size_t index, const cad_import::BoundingBox& bounds) {
-  optics_[index].optic_changed();
-  bounds_changed(bounds);
+  stack_.optic_changed(index, bounds);
 }
 
 void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placement,
                             const cad_import::BoundingBox& bounds) {
-  optics_[index].place(placement);
-  bounds_changed(bounds);
+  stack_.place_optic(index, placement, bounds);
 }
 
-void PvrrFrame::bounds_changed(const cad_import::BoundingBox& bounds) {
-  for (PvrrOptic& optic : optics_) {
-    optic.set_bounds(bounds);
-    optic.map_changed();
-  }
-}
-
-void PvrrFrame::update(const Camera& camera, const FrameOptions& options) {
-  const RasterView view = camera_view(camera, {options.width, options.height});
-  for (PvrrOptic& optic : optics_) optic.update(view, options);
+void PvrrFrame::update(const Camera& camera, const FrameOptions& options, int levels) {
+  stack_.update(camera_view(camera, {options.width, options.height}), options, levels);
 }
 
 void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  for (PvrrOptic& optic : optics_) optic.draw_map(offset_px, geometry, overlay);
+  stack_.draw_maps(offset_px, geometry, overlay);
 }
 
 void PvrrFrame::copy_maps(MapColors& maps) const {
-  maps.clear(optics_.size());
-  for (std::size_t i = 0; i < optics_.size(); ++i)
-    if (optics_[i].faces_eye()) maps.add(i, optics_[i].map().views(), optics_[i].map().target());
+  maps.clear(stack_.size());
+  for (std::size_t i = 0; i < stack_.size(); ++i) {
+    const PvrrOptic& optic = stack_.optic(i);
+    if (optic.faces_eye()) maps.add(i, optic.map().views(), optic.map().target());
+  }
 }
 
 RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options, RasterPicture& picture) {
@@ -78,7 +68,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   const double total_ms = gl_time_ms([&] {
     trace_ms = gl_time_ms([&] {
       picture.begin(options);
-      update(camera, options);
+      update(camera, options, scene_.settings.depth);
       set_overlay(options);
     });
     const glm::dvec2 offset = camera.offset_px;
@@ -97,22 +87,24 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.stats.time_ms = {{"trace", trace_ms}, {"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   result.warnings = map_warnings();
-  for (const PvrrOptic& optic : optics_) {
+  for (std::size_t i = 0; i < stack_.size(); ++i) {
+    const PvrrOptic& optic = stack_.optic(i);
     if (auto warning = optic.warning()) result.warnings.push_back(std::move(*warning));
     if (auto warning = region_warning(scene_.optics[optic.index()].name, optic.regions()))
       result.warnings.push_back(std::move(*warning));
   }
+  for (std::string& warning : stack_.warnings()) result.warnings.push_back(std::move(warning));
   return result;
 }
 
 void PvrrFrame::count_anew() const {
-  const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, optics_.size()), 0);
+  const std::vector<std::uint32_t> zeros(std::max<std::size_t>(1, stack_.size()), 0);
   update_buffer(outside_counter_, std::as_bytes(std::span(zeros)));
 }
 
 std::vector<std::string> PvrrFrame::map_warnings() const {
   std::vector<std::string> warnings;
-  std::vector<std::uint32_t> outside(optics_.size(), 0);
+  std::vector<std::uint32_t> outside(stack_.size(), 0);
   if (!outside.empty())
     glGetNamedBufferSubData(outside_counter_.id(), 0,
                             static_cast<GLsizeiptr>(outside.size() * sizeof(std::uint32_t)), outside.data());
@@ -128,7 +120,8 @@ std::vector<std::string> PvrrFrame::map_warnings() const {
 void PvrrFrame::set_overlay(const FrameOptions& options) {
   std::vector<OverlayBall> balls;
   std::vector<OverlayLine> lines;
-  for (const PvrrOptic& optic : optics_) {
+  for (std::size_t k = 0; k < stack_.size(); ++k) {
+    const PvrrOptic& optic = stack_.optic(k);
     if (!optic.faces_eye()) continue;
     for (std::size_t i = 0; i < optic.hits().size(); ++i) {
       const optics::VertexHit& hit = optic.hits()[i];
@@ -154,60 +147,33 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   target.bind(geometry);
   raster_.clear(camera, pass);
   // First the optics, which hide much and cost little.
-  for (std::size_t i = 0; i < optics_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
+  for (std::size_t i = 0; i < stack_.size(); ++i) draw_optic(i, target, camera, offset_px, geometry);
   raster_.draw_all(camera, pass);
   if (!options.overlay_vertices && !options.overlay_rays && !options.overlay_patches) return;
   // Overlays have no geometry of their own: what they cover keeps its.
   target.bind(false);
   overlay_.draw_in_scene(camera, nullptr);
-  if (options.overlay_patches)
-    for (const PvrrOptic& optic : optics_)
-      if (optic.faces_eye()) overlay_.draw_patches(camera, optic.seen_surface(), optic.viewpoint_lines());
+  for (std::size_t i = 0; options.overlay_patches && i < stack_.size(); ++i) {
+    const PvrrOptic& optic = stack_.optic(i);
+    if (optic.faces_eye()) overlay_.draw_patches(camera, optic.seen_surface(), optic.viewpoint_lines());
+  }
   if (!options.overlay_vertices) return;
-  for (const PvrrOptic& optic : optics_) overlay_.draw_mesh(camera, optic.seen_surface());
+  for (std::size_t i = 0; i < stack_.size(); ++i) overlay_.draw_mesh(camera, stack_.optic(i).seen_surface());
 }
 
 void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const RasterView& camera,
                            glm::dvec2 offset_px, bool geometry) {
-  const PvrrOptic& drawn = optics_[index];
-  const optics::Optic& optic = scene_.optics[index];
   glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, outside_counter_.id(),
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
-  if (optic.kind == optics::OpticKind::lens) {
-    drawn.lens().draw(
-        camera, target, geometry, LensLook::map, lens_programs_, optic, index, scene_.environment.ambient,
-        [&](std::size_t patch, bool with_geometry) { drawn.set_map(patch, offset_px, with_geometry); });
-    return;
-  }
-  glUseProgram(mirror_program(geometry).id());
-  RasterScene::set_mesh_origin(camera, drawn.seen_surface());
-  set_optic_uniforms(optic, index);
-  for (std::size_t patch = 0; patch < drawn.seen_surface().part_count(); ++patch) {
-    drawn.set_map(patch, offset_px, geometry);
-    drawn.seen_surface().draw_part(patch);
-  }
+  stack_.drawer().draw(stack_.optic(index), index, target, camera, offset_px, {geometry, false, false});
 }
 
 FrameStats PvrrFrame::statistics() const {
   FrameStats stats;
-  for (const PvrrOptic& optic : optics_) {
-    stats.optics.push_back(optic.statistics());
-    stats.rays += stats.optics.back().scene_rays;
-  }
+  for (std::size_t i = 0; i < stack_.size(); ++i) stats.optics.push_back(stack_.optic(i).statistics());
+  stats.maps = stack_.statistics();
+  for (const MapStats& map : stats.maps) stats.rays += map.scene_rays;
   return stats;
-}
-
-const GlProgram& PvrrFrame::mirror_program(bool geometry) {
-  const auto found = mirror_programs_.find(geometry);
-  if (found != mirror_programs_.end()) return found->second;
-  std::vector<std::string> defines = raster_.shading_defines();
-  if (geometry) defines.emplace_back("GEOMETRY");
-  return mirror_programs_
-      .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                       "raster_optic.glsl", "pvrr_optic.frag.glsl"},
-                                      defines))
-      .first->second;
 }
 
 }  // namespace catoptra::render

@@ -1,15 +1,13 @@
 // Mode `pvrr`: a frame by per-vertex reflection and refraction (paper 3.1, 4.5; design 2).
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "render/frame.h"
 #include "render/src/map_colors.h"
 #include "render/src/overlay_vertices.h"
-#include "render/src/pvrr_optic.h"
-#include "render/src/raster_lens.h"
+#include "render/src/pvrr_stack.h"
 #include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
 
@@ -33,15 +31,15 @@ class PvrrFrame {
   [[nodiscard]] RenderResult render(const Camera& camera, const FrameOptions& options,
                                     RasterPicture& picture);
 
-  /// For mode exact, the parts of render(): vertex rays, viewpoints and sizes of the maps; the maps of a
-  /// sample, which are then copied into `maps`; and what they have cost.
-  void update(const Camera& camera, const FrameOptions& options);
+  /// For mode exact, the parts of render(): vertex rays, viewpoints and sizes of the maps, with optics in
+  /// optics down to `levels`; the maps of a sample, of which those of the optics in the picture are then
+  /// copied into `maps`; and what they have cost.
+  void update(const Camera& camera, const FrameOptions& options, int levels);
   void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
   void copy_maps(MapColors& maps) const;
   [[nodiscard]] FrameStats statistics() const;
 
  private:
-  void bounds_changed(const cad_import::BoundingBox& bounds);
   void set_overlay(const FrameOptions& options);
   void draw_picture(const RasterTarget& target, const RasterView& camera, glm::dvec2 offset_px, bool geometry,
                     const FrameOptions& options);
@@ -49,15 +47,12 @@ class PvrrFrame {
                   glm::dvec2 offset_px, bool geometry);
   void count_anew() const;
   [[nodiscard]] std::vector<std::string> map_warnings() const;
-  const GlProgram& mirror_program(bool geometry);
 
   const Scene& scene_;
   RasterScene& raster_;
-  std::vector<PvrrOptic> optics_;  ///< one per optic
+  PvrrStack stack_;
   Overlay overlay_;
   GlBuffer outside_counter_;
-  std::map<bool, GlProgram> mirror_programs_;
-  LensPrograms lens_programs_;
 };
 
 }  // namespace catoptra::render

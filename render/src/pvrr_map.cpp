@@ -75,7 +75,7 @@ void PvrrMap::bind_optic_depth() const {
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
                    const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px,
-                   bool geometry, Overlay* overlay) {
+                   bool geometry, Overlay* overlay, const NestedOptics* nested) {
   const AtlasPlace& place = layout_.places[patch];
   const glm::ivec2 size = place.texels + 2 * place.guard;
   const optics::VirtualView guarded = with_guard(view, place.texels, place.guard);
@@ -94,7 +94,13 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
     back.corner = place.corner;
     if (scene.sees_anything(back, pass)) views.zooming = back;
   }
-  const Regions regions{scene, surface, views, view.beyond_viewpoint, kBeside * view.zooming_far_mm, overlay};
+  const Regions regions{scene,
+                        surface,
+                        views,
+                        view.beyond_viewpoint,
+                        kBeside * view.zooming_far_mm,
+                        overlay,
+                        nested && !nested->optics.empty() ? nested : nullptr};
   // What is cleared, and resolved, is the patch's part alone.
   glEnable(GL_SCISSOR_TEST);
   glScissor(place.corner.x, place.corner.y, size.x, size.y);
@@ -114,7 +120,7 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
 }
 
 void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const {
-  const auto& [scene, surface, views, beyond_viewpoint, beside_mm, overlay] = regions;
+  const auto& [scene, surface, views, beyond_viewpoint, beside_mm, overlay, nested] = regions;
   if (!beyond_viewpoint) {
     bind_optic_depth();
     scene.draw_optic_depth(views.view, surface);
@@ -124,7 +130,13 @@ void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const Raster
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   }
   target.bind(pass.geometry);
-  scene.draw(views.view, pass);
+  scene.clear(views.view, pass);
+  if (nested) {
+    pass.nested = nested->optics;
+    nested->draw(views.view, pass, target);
+  }
+  scene.draw_all(views.view, pass);
+  pass.nested = {};
   if (overlay) {
     target.bind(false);
     overlay->draw_in_scene(views.view, pass.clip_depth);

@@ -1,6 +1,7 @@
 // PVRR pass 1: the reflection maps of one optic, one per patch (paper 3.1, step 2; design 2.3 and 2.6).
 #pragma once
 
+#include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
@@ -40,6 +41,13 @@ struct PvrrMapSize {
   return choose_map_size(mirror.mesh, pixels, coordinates, view, picture, texels_per_pixel);
 }
 
+/// Optics that a map shows with maps of their own.
+struct NestedOptics {
+  std::vector<std::size_t> optics;
+  /// Draws them into the map, which is bound, as the pass says.
+  std::function<void(const RasterView& view, const RasterPass& pass, const RasterTarget& target)> draw;
+};
+
 class PvrrMap {
  public:
   /// Renews the textures where their size is not that of the layout.
@@ -59,10 +67,11 @@ class PvrrMap {
   /// meets it first (design 2.10), and both have the same map coordinates. What lies behind the optic is cut
   /// by its depth; so is, beside the optic, the last tenth of the way back to it: there stands its own frame,
   /// which rays that leave near its border do not meet.
-  /// `patch`: its place in the layout; `offset_px`: place of the samples within a texel.
+  /// `patch`: its place in the layout; `offset_px`: place of the samples within a texel; `nested`: may be
+  /// null; in a zooming region these optics too are plain bodies.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
             const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px, bool geometry,
-            Overlay* overlay);
+            Overlay* overlay, const NestedOptics* nested = nullptr);
 
   /// The views of the last draw() of each patch, in its place of the target, and those of zooming regions in
   /// which anything may be seen. Depths of both are in the target, see zooming_view().
@@ -85,6 +94,7 @@ class PvrrMap {
     bool beyond_viewpoint;
     double beside_mm;
     Overlay* overlay;
+    const NestedOptics* nested;  ///< or null
   };
   void draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const;
 

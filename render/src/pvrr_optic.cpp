@@ -1,5 +1,6 @@
 #include "render/src/pvrr_optic.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -22,6 +23,8 @@ using optics::VertexHit;
 // of a common motion of eye and optic by rounding, in scenes up to 100 km. Rays then are off by 1e-8 rad, a
 // sixth of the step of the floats in which map coordinates are drawn.
 constexpr double kEyeRounding = 1e-8;
+
+constexpr std::size_t kVerticesPerTask = 64;
 
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
 constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9, kMapPlace = 10;
@@ -55,13 +58,14 @@ bool same_view(const RasterView& a, const RasterView& b) {
 }  // namespace
 
 PvrrOptic::PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
-                     const cad_import::BoundingBox& bounds)
+                     const cad_import::BoundingBox& bounds, const OpticPlace& place)
     : scene_(scene),
       optic_(scene.optics[optic]),
       index_(optic),
       raster_(raster),
       rays_(rays),
-      bounds_(bounds) {}
+      bounds_(bounds),
+      place_(place) {}
 
 void PvrrOptic::optic_changed() {
   tree_.forget();
@@ -85,7 +89,9 @@ void PvrrOptic::place(const optics::Placement& placement) {
   hits_hold_ = false;
 }
 
-void PvrrOptic::update(const RasterView& camera, const FrameOptions& options) {
+void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, double texels_before,
+                       const PvrrOptic* above) {
+  above_ = above;
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   multisample_ = options.multisample;
   const RasterView view = in_own_frame(camera, placement_);
@@ -97,29 +103,74 @@ void PvrrOptic::update(const RasterView& camera, const FrameOptions& options) {
   }
   const bool stays = hits_hold_;
   if (!stays) find_hits();
-  if (!stays || !fitted_for_ || !same_view(*fitted_for_, view)) fit(view, !stays, options.reuse_static);
+  const bool same_texels = std::exchange(texels_before_, texels_before) == texels_before;
+  if (!stays || !same_texels || !fitted_for_ || !same_view(*fitted_for_, view))
+    fit(view, !stays, options.reuse_static);
   map_.resize(layout_, options.geometry);
 }
 
 bool PvrrOptic::rays_hold(const glm::dvec3& eye_mm) const {
+  if (above_ && above_->traces_ != traced_above_) return false;
   return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
                              kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
 void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
+  if (above_) traced_above_ = above_->traces_;
+  ++traces_;
   hits_hold_ = false;
+  light_.reset();
+  const auto arrival = [this](const glm::dvec3& point) { return arrival_at(point); };
   if (optic_.kind == OpticKind::mirror) {
-    mirror_rays_ = optics::reflect_vertices(optic_, eye_mm);
+    const std::vector<optics::Arrival> arriving = arrivals(optic_.mesh);
+    mirror_rays_.clear();
+    for (std::size_t i = 0; i < arriving.size(); ++i)
+      mirror_rays_.push_back(optics::reflect_vertex(optic_.mesh.vertices[i], optic_, arriving[i]));
     ray_count_ = static_cast<std::size_t>(std::count_if(mirror_rays_.begin(), mirror_rays_.end(),
                                                         [](const VertexHit& h) { return h.faces_eye; }));
+    light_.emplace(optic_, optics::LensSide::front, nullptr, optics::LensIndices(), mirror_rays_, arrival);
   } else {
     if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
-    lens_paths_ = refract_eye_rays(optic_, *tracer_, eye_mm);
+    const optics::LensSide entered = optics::side_towards(optic_, eye_mm);
+    lens_paths_ =
+        refract_eye_rays(optic_, *tracer_, eye_mm, entered, arrivals(*optics::side_of(optic_, entered).mesh));
     ray_count_ = lens_paths_.passed();
+    light_.emplace(optic_, entered, tracer_.get(),
+                   optics::lens_indices(optic_, lens_paths_.samples[0].wavelength_nm), lens_paths_.hits[0],
+                   arrival);
   }
   traced_rays_ = ray_count_;
   faces_eye_ = ray_count_ > 0;
+}
+
+optics::Arrival PvrrOptic::arrival_at(const glm::dvec3& own_point_mm) const {
+  if (above_)
+    if (const auto light = above_->light_to(placement_.point(own_point_mm))) {
+      const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
+      return {placement_.own_point(light->origin_mm), placement_.own_direction(light->direction),
+              to_own * light->turn * to_world};
+    }
+  return optics::arrival_from_eye(*traced_from_, own_point_mm);
+}
+
+std::vector<optics::Arrival> PvrrOptic::arrivals(const tessellate::OpticArrays& mesh) const {
+  std::vector<optics::Arrival> arrivals(mesh.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, arrivals.size(), kVerticesPerTask),
+                    [&](const auto& some) {
+                      for (std::size_t i = some.begin(); i < some.end(); ++i)
+                        arrivals[i] = arrival_at(mesh.vertices[i].position_mm);
+                    });
+  return arrivals;
+}
+
+std::optional<optics::Arrival> PvrrOptic::light_to(const glm::dvec3& point_mm) const {
+  if (!light_) return std::nullopt;
+  auto light = light_->to(placement_.own_point(point_mm));
+  if (!light) return std::nullopt;
+  const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
+  return optics::Arrival{placement_.point(light->origin_mm), placement_.direction(light->direction),
+                         to_world * light->turn * to_own};
 }
 
 void PvrrOptic::find_hits() {
@@ -136,13 +187,18 @@ void PvrrOptic::find_hits() {
 }
 
 std::vector<VertexHit> PvrrOptic::with_hits(std::vector<VertexHit> rays) const {
-  if (placement_ == optics::Placement()) return optics::find_scene_hits(std::move(rays), rays_);
+  const auto find = [&](std::vector<VertexHit> in_world) {
+    in_world = optics::find_scene_hits(std::move(in_world), rays_);
+    if (place_.bodies) place_.bodies->add_hits(in_world, index_, place_.shows_lenses);
+    return in_world;
+  };
+  if (placement_ == optics::Placement()) return find(std::move(rays));
   std::vector<VertexHit> in_world = rays;
   for (VertexHit& ray : in_world) {
     ray.surface_point_mm = placement_.point(ray.surface_point_mm);
     ray.direction = placement_.direction(ray.direction);
   }
-  in_world = optics::find_scene_hits(std::move(in_world), rays_);
+  in_world = find(std::move(in_world));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i].scene_hit = in_world[i].scene_hit;
     rays[i].hit_point_mm = placement_.own_point(in_world[i].hit_point_mm);
@@ -175,7 +231,7 @@ void PvrrOptic::fit(const RasterView& camera, bool hits_anew, bool remember) {
     }
   }
   if (plane)
-    set_layout({{plane->texels, 1.0}});
+    set_layout({{plane->texels, texels_before_}});
   else
     set_map_sizes(camera);
 }
@@ -186,7 +242,10 @@ void PvrrOptic::set_map_sizes(const RasterView& camera) {
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     pixels.push_back(hits()[i].faces_eye ? camera.pixel(seen_mesh().vertices[i].position_mm) : glm::dvec3(0));
   const auto size_of = [&](const tessellate::OpticArrays& mesh, const optics::VirtualView& view) {
-    return choose_map_size(mesh, pixels, coordinates_, view, camera.size, scene_.settings.texels_per_pixel);
+    PvrrMapSize size = choose_map_size(mesh, pixels, coordinates_, view, camera.size,
+                                       scene_.settings.texels_per_pixel / texels_before_);
+    size.texels_per_pixel *= texels_before_;
+    return size;
   };
   if (!in_patches()) {
     set_layout({size_of(seen_mesh(), views_[0])});
@@ -231,20 +290,29 @@ std::vector<std::vector<glm::dvec3>> PvrrOptic::lens_coordinates() const {
   return of_samples;
 }
 
-void PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  if (!faces_eye_) return;
+bool PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
+                         std::span<const NestedOptics> nested) {
+  if (!faces_eye_) return false;
   const glm::dvec2 offset = map_offset(offset_px);
   const Drawn wanted{offset, geometry, overlay ? 1 : multisample_};
-  if (!overlay && drawn_ == wanted) return;
+  if (!overlay && drawn_ == wanted) return false;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
                                 : raster_.side(index_, optics::other_side(lens_rays_.entered));
   map_.set_multisample(wanted.multisample);  // overlays are drawn over the map as it is
   for (std::size_t patch = 0; patch < views_.size(); ++patch)
     map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
-              map_sizes_[patch].texels_per_pixel, offset, geometry, overlay);
+              map_sizes_[patch].texels_per_pixel, offset, geometry, overlay,
+              patch < nested.size() ? &nested[patch] : nullptr);
   drawn_ = wanted;
   if (overlay) drawn_.reset();
+  return true;
+}
+
+RasterView PvrrOptic::map_camera(std::size_t patch) const {
+  const AtlasPlace& place = layout_.places[patch];
+  return map_view(with_guard(placed(views_[patch], placement_), place.texels, place.guard),
+                  place.texels + 2 * place.guard);
 }
 
 void PvrrOptic::set_map(std::size_t patch, glm::dvec2 offset_px, bool geometry) const {

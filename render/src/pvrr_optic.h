@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "optics/lens_path.h"
+#include "optics/passed_light.h"
 #include "optics/vertex_hits.h"
 #include "optics/view_regions.h"
 #include "optics/virtual_view.h"
 #include "render/frame.h"
 #include "render/src/lens_rays.h"
+#include "render/src/optic_bodies.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/patch_mesh.h"
 #include "render/src/patch_tree.h"
@@ -25,11 +27,18 @@
 
 namespace catoptra::render {
 
+/// Where an optic stands in the tree of maps (pvrr_stack.h).
+struct OpticPlace {
+  const OpticBodies* bodies = nullptr;  ///< what rays meet of the other optics; null where there are none
+  bool shows_lenses = false;            ///< the map shows the other lenses, which rays then meet
+  bool nested = false;                  ///< seen in another one's map: it is one patch then
+};
+
 class PvrrOptic {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
   PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
-            const cad_import::BoundingBox& bounds);
+            const cad_import::BoundingBox& bounds, const OpticPlace& place = {});
 
   /// The optic itself has changed; or something else that its map shows; or the bounds of everything.
   void optic_changed();
@@ -37,15 +46,36 @@ class PvrrOptic {
   void set_bounds(const cad_import::BoundingBox& bounds);
   /// The optic is somewhere else. Its rays stay if the eye comes along.
   void place(const optics::Placement& placement);
+  /// Other optics have changed or moved, and rays may meet them.
+  void others_changed() { hits_hold_ = false; }
 
   /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices where
   /// the eye has another place as the optic sees it; their hits where either has another place in the world,
   /// and with them patches, viewpoints, map coordinates, and the sizes of the maps. `camera`: in the world,
-  /// without sample offset.
-  void update(const RasterView& camera, const FrameOptions& options);
+  /// without sample offset. `texels_before`: texels per pixel of the map that the camera is of, 1 for the
+  /// picture. `above`: the optic in whose map the camera sees this one, by way of which light comes here;
+  /// null: none. It must outlive this, and its own update() must have been called.
+  void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1,
+              const PvrrOptic* above = nullptr);
 
-  /// Pass 1, unless the maps are there already. An `overlay` (or null) is drawn into them.
-  void draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  /// How light comes from the eye through this optic to a point beyond it, both in the world; nullopt where
+  /// it does not.
+  [[nodiscard]] std::optional<optics::Arrival> light_to(const glm::dvec3& point_mm) const;
+
+  /// Pass 1, unless the maps are there already; returns whether they were drawn. An `overlay` (or null) is
+  /// drawn into them, and before that the optics that each shows by their own maps (`nested`: per patch, or
+  /// empty).
+  bool draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
+                std::span<const NestedOptics> nested = {});
+
+  /// The views of the patches' maps in the world, with their guard (after update(), of an optic that faces
+  /// the eye), without sample offset; and the offset of their samples within their texels.
+  [[nodiscard]] std::size_t patch_count() const { return views_.size(); }
+  [[nodiscard]] RasterView map_camera(std::size_t patch) const;
+  [[nodiscard]] double texels_per_pixel(std::size_t patch) const {
+    return map_sizes_[patch].texels_per_pixel;
+  }
+  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
 
   /// For the program in use: the map of pass 2 of `patch` (part of seen_surface()), with the map rays that
   /// geometry needs.
@@ -75,6 +105,8 @@ class PvrrOptic {
 
  private:
   [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;
+  [[nodiscard]] optics::Arrival arrival_at(const glm::dvec3& own_point_mm) const;
+  [[nodiscard]] std::vector<optics::Arrival> arrivals(const tessellate::OpticArrays& mesh) const;
   void trace(const glm::dvec3& eye_mm);
   void find_hits();
   [[nodiscard]] std::vector<optics::VertexHit> with_hits(std::vector<optics::VertexHit> rays) const;
@@ -97,7 +129,6 @@ class PvrrOptic {
   [[nodiscard]] std::span<const std::uint32_t> patches_of_seen() const;
   [[nodiscard]] std::uint32_t patch_of(std::size_t vertex) const;
   [[nodiscard]] const LensRays& shown_rays() const;
-  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
 
   const Scene& scene_;
   const optics::Optic& optic_;
@@ -105,10 +136,15 @@ class PvrrOptic {
   RasterScene& raster_;
   const optics::RayScene& rays_;
   cad_import::BoundingBox bounds_;
+  OpticPlace place_;
 
   optics::Placement placement_;
 
   std::optional<glm::dvec3> traced_from_;  ///< the eye, in the optic's frame, that what follows belongs to
+  const PvrrOptic* above_ = nullptr;
+  std::size_t traced_above_ = 0;  ///< how often the rays of the optic above had been traced
+  std::size_t traces_ = 0;
+  std::optional<optics::PassedLight> light_;
   std::vector<optics::VertexHit> mirror_rays_;
   std::unique_ptr<optics::LensTracer> tracer_;
   LensRays lens_paths_;
@@ -130,13 +166,14 @@ class PvrrOptic {
   // Of the mesh cut into patches where nothing is refined, else of that of refinement_.
   PvrrRefinement refinement_;
   bool refined_ = false;
-  std::unique_ptr<RasterOptic> own_surface_;  ///< null where the mesh is drawn as tessellated
+  std::unique_ptr<RasterOptic> own_surface_;  ///< null where the scene's own is drawn
   std::size_t vertex_count_ = 0;              ///< of the mesh drawn, those that patches share counted once
   optics::Optic refined_lens_;                ///< the lens with the refined mesh
   std::optional<glm::dvec3> refined_from_;    ///< the eye that refined_paths_ belong to
   LensRays refined_paths_, refined_rays_;     ///< without and with what they meet
 
   std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
+  double texels_before_ = 1;
   std::vector<optics::VirtualView> views_;   ///< per patch
   bool on_pixel_grid_ = false;               ///< the view is that of plane_view()
   std::vector<glm::dvec3> cut_coordinates_;  ///< of the mesh cut into patches, in fitted_ or the plane's view

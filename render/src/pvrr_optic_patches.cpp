@@ -49,7 +49,7 @@ bool PvrrOptic::choose_patches(const RasterView& camera, bool remember) {
   const bool other_side = std::exchange(cut_side_, lens_paths_.entered) != lens_paths_.entered;
   if (other_side) tree_.forget();
   PatchLabels labels;
-  if (scene_.settings.max_patches > 1 && (lens || !is_plane(optic_))) {
+  if (scene_.settings.max_patches > 1 && !place_.nested && (lens || !is_plane(optic_))) {
     std::vector<VertexHit> hits = lens ? whole_lens_rays_.hits[0] : whole_hits_;
     for (VertexHit& hit : hits) hit.faces_eye = passes(hit);
     labels = tree_.choose({optic_, tessellated_mesh(), hits, optics::in_own_frame(bounds_, placement_),
@@ -119,7 +119,9 @@ void PvrrOptic::set_coordinates() {
 void PvrrOptic::set_surface() {
   const auto& mesh = seen_mesh();
   vertex_count_ = mesh.vertices.size();
-  if (!in_patches() && !refined_) {
+  // The scene's own has the map coordinates of what the picture shows.
+  const bool shares_surface = !place_.nested || optic_.kind == OpticKind::lens;
+  if (!in_patches() && !refined_ && shares_surface) {
     own_surface_.reset();
     return;
   }

@@ -68,6 +68,7 @@ std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView
                                     const optics::VirtualView& fitted,
                                     const cad_import::BoundingBox& bounds) {
   if (fitted.projection != optics::MapProjection::perspective || !is_plane(optic)) return std::nullopt;
+  if (camera.projection[2][3] == 0) return std::nullopt;  // a parallel projection
   const auto box = pixel_box(optic, camera);
   if (!box) return std::nullopt;
   const glm::ivec2 texels(box->end - box->begin);
@@ -83,7 +84,7 @@ std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView
   view.up = optics::reflect(axes[1], normal);
   view.direction = -optics::reflect(axes[2], normal);
 
-  // Pixel coordinates to tangents, as the camera has them.
+  // Pixel coordinates to tangents, as the camera has them; a map's axis is not in its middle.
   const glm::dmat4& p = camera.projection;
   const auto tangent_x = [&](double x) { return (2 * x / camera.size.x - 1 + p[2][0]) / p[0][0]; };
   const auto tangent_y = [&](double y) { return (1 - 2 * y / camera.size.y + p[2][1]) / p[1][1]; };

@@ -23,8 +23,8 @@ struct PlaneView {
 
 /// Nullopt where the optic is not plane (vertices within 1e-6 mm of one plane, normals within 1e-9 rad),
 /// reaches beside or behind the eye, is not on the screen, or would need more than 4096 texels a side.
-/// `camera`: without sample offset; `fitted`: the optic's view from make_virtual_view, whose viewpoint is
-/// kept; `bounds`: of the whole scene.
+/// `camera`: without sample offset, of any perspective (a map's, too); `fitted`: the optic's view from
+/// make_virtual_view, whose viewpoint is kept; `bounds`: of the whole scene.
 [[nodiscard]] std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView& camera,
                                                   const optics::VirtualView& fitted,
                                                   const cad_import::BoundingBox& bounds);

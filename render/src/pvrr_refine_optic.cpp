@@ -55,7 +55,9 @@ void PvrrOptic::refine(const RasterView& camera, bool remember) {
   const bool lens = optic_.kind == OpticKind::lens;
   const std::span<const VertexHit> hits = lens ? lens_rays_.hits[0] : mirror_hits_;
   refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits, cut_coordinates_, views_,
-                      patches_.patch, *traced_from_, camera, scene_.settings.max_error_px, remember,
+                      patches_.patch, *traced_from_,
+                      [this](const glm::dvec3& point) { return arrival_at(point); }, camera,
+                      scene_.settings.max_error_px, remember,
                       [this](std::vector<VertexHit> rays) { return with_hits(std::move(rays)); }});
   refinement_rays_ = refinement_.traced_rays();
   scene_rays_ += refinement_.scene_rays();
@@ -76,7 +78,8 @@ void PvrrOptic::refine_lens(bool remember) {
     if (refined_lens_.faces.empty()) refined_lens_ = optic_;
     const bool front = lens_rays_.entered == optics::LensSide::front;
     (front ? refined_lens_.mesh : refined_lens_.back.mesh) = refinement_.mesh();
-    refined_paths_ = refract_eye_rays(refined_lens_, *tracer_, *traced_from_, lens_rays_.entered);
+    refined_paths_ = refract_eye_rays(refined_lens_, *tracer_, *traced_from_, lens_rays_.entered,
+                                      arrivals(refinement_.mesh()));
     refined_from_ = traced_from_;
     refinement_rays_ += refined_paths_.passed();
   }

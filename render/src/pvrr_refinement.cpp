@@ -188,9 +188,10 @@ void PvrrRefinement::trace_middles(const RefinementRequest& request, std::span<c
     for (std::size_t k = some.begin(); k < some.end(); ++k) {
       const EdgeMiddle& edge = edges[missing[k]];
       const auto& vertex = mesh_->middle(edge);
+      const optics::Arrival arrival = request.arrival(vertex.position_mm);
       rays_[twin_[edge.node]] = lens ? optics::refract_vertex(vertex, request.optic, *request.tracer,
-                                                              request.entered, indices, eye_mm_)
-                                     : optics::reflect_vertex(vertex, request.optic, eye_mm_);
+                                                              request.entered, indices, arrival)
+                                     : optics::reflect_vertex(vertex, request.optic, arrival);
     }
   });
 }

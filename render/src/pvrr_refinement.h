@@ -30,6 +30,7 @@ struct RefinementRequest {
   std::span<const optics::VirtualView> views;          ///< per patch
   std::span<const std::uint32_t> patch;                ///< per vertex; empty: all belong to the first
   glm::dvec3 eye_mm{0};  ///< where the rays were traced from: the camera's place but for rounding
+  std::function<optics::Arrival(const glm::dvec3& point_mm)> arrival;  ///< how light comes from there
   const RasterView& camera;
   double max_error_px = 0.5;
   bool remember =

@@ -31,11 +31,13 @@ const GlProgram& LensPrograms::program(LensLook look, std::size_t samples, bool 
   if (found != programs_.end()) return found->second;
   std::vector<std::string> defines{"SAMPLES " + std::to_string(samples)};
   if (geometry) defines.emplace_back("GEOMETRY");
+  if (look == LensLook::nested || look == LensLook::nested_clipped) defines.emplace_back("IN_MAP");
+  if (look == LensLook::nested_clipped) defines.emplace_back("CLIP_AGAINST_OPTIC");
   return programs_
       .emplace(key, make_program(
                         {"raster_view.glsl", "raster_lens.vert.glsl"},
                         {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl", "raster_lens.glsl",
-                         look == LensLook::map ? "pvrr_lens.frag.glsl" : "cubemap_lens.frag.glsl"},
+                         look == LensLook::cube ? "cubemap_lens.frag.glsl" : "pvrr_lens.frag.glsl"},
                         defines))
       .first->second;
 }
@@ -92,7 +94,7 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
     if (look == LensLook::map) glUniform1i(kCounts, b == 0);
     glUniformMatrix3fv(kWeight, GLsizei(batch.weights.size()), GL_FALSE, &batch.weights[0][0].x);
     glBindTextureUnit(kMaskUnit, mask_->texture().id());
-    if (geometry && b == 0 && look == LensLook::map) glUniform1i(kGeometrySample, 0);
+    if (geometry && b == 0 && look != LensLook::cube) glUniform1i(kGeometrySample, 0);
     for (std::size_t part = 0; part < side_->part_count(); ++part) {
       set_look(part, geometry && b == 0);
       side_->draw_part(part, batch.array);

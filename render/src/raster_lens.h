@@ -17,8 +17,9 @@
 
 namespace catoptra::render {
 
-/// How what a vertex shows is looked up.
-enum class LensLook { map, cube };
+/// How what a vertex shows is looked up: in a map, by a lens that the picture shows, or one that another map
+/// shows (as a whole, or only before a surface: RasterPass::clip_depth); or in a cube map.
+enum class LensLook { map, nested, nested_clipped, cube };
 
 /// The programs that draw lenses, made on first use.
 class LensPrograms {

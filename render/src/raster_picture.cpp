@@ -3,8 +3,23 @@
 #include <glm/geometric.hpp>
 
 namespace catoptra::render {
-RasterPicture::RasterPicture()
-    : nothing_(make_vertex_array({})),
+namespace {
+
+/// The optics of a way as passed_detail() of raster_shown.glsl numbers it, the first one first.
+void set_path(Frame& frame, std::size_t pixel, std::uint32_t way, std::uint32_t base) {
+  frame.optic_id[pixel] = static_cast<std::int32_t>(way % base) - 1;
+  for (; way > 0; way /= base) {
+    const auto optic = static_cast<std::int32_t>(way % base) - 1;
+    frame.path[pixel] = path_after(frame.path[pixel], optic);
+    ++frame.bounces[pixel];
+  }
+}
+
+}  // namespace
+
+RasterPicture::RasterPicture(std::size_t optic_count)
+    : optic_count_(optic_count),
+      nothing_(make_vertex_array({})),
       accumulate_(make_program({"raster_accumulate.vert.glsl"}, {"raster_accumulate.frag.glsl"})) {}
 
 void RasterPicture::start_sum() {
@@ -76,9 +91,12 @@ void RasterPicture::read_geometry(Frame& frame) const {
   frame.surface.assign(detail.size(), glm::vec3(0));
   frame.direction.assign(detail.size(), glm::vec3(0));
   frame.optic_id.assign(detail.size(), -1);
+  frame.bounces.assign(detail.size(), 0);
+  frame.path.assign(detail.size(), 0);
   for (std::size_t i = 0; i < detail.size(); ++i) {
     if (detail[i].w < 0.5f) continue;
-    frame.optic_id[i] = static_cast<std::int32_t>(detail[i].w + 0.5f) - 1;
+    set_path(frame, i, static_cast<std::uint32_t>(detail[i].w + 0.5f),
+             static_cast<std::uint32_t>(optic_count_ + 1));
     frame.surface[i] = glm::vec3(detail[i]);
     const glm::vec3 shown(frame.position[i]);
     const glm::vec3 direction = frame.position[i].w == 0 ? shown : shown - frame.surface[i];

@@ -15,7 +15,8 @@ namespace catoptra::render {
 /// Kept from frame to frame, so that textures are made again only where the size changes.
 class RasterPicture {
  public:
-  RasterPicture();
+  /// Of a scene with `optic_count` optics.
+  explicit RasterPicture(std::size_t optic_count);
 
   /// From now on every picture is summed up with those before it, until stop_sum().
   void start_sum();
@@ -39,7 +40,8 @@ class RasterPicture {
   /// Takes over what has been drawn.
   void add_sample();
 
-  /// Sets position, surface, direction and optic_id of `frame` to what the target holds of them.
+  /// Sets position, surface, direction, optic_id, bounces and path of `frame` to what the target holds of
+  /// them.
   void read_geometry(Frame& frame) const;
 
   /// The picture, or the mean of those in the sum.
@@ -48,6 +50,7 @@ class RasterPicture {
   [[nodiscard]] Frame read_back() const;
 
  private:
+  std::size_t optic_count_;
   FrameOptions options_;
   std::unique_ptr<RasterTarget> target_;
   std::unique_ptr<RasterTarget> smooth_;  ///< with several samples a pixel; null without multisampling

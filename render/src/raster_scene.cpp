@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "cad_import/error.h"
+#include "render/src/shading.h"
 
 namespace catoptra::render {
 namespace {
@@ -171,7 +172,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   gpu.sky_x = glm::vec4(glm::vec3(directions.dx), 0);
   gpu.sky_y = glm::vec4(glm::vec3(directions.dy), 0);
   gpu.sky_color = glm::vec4(scene_.environment.color, 0);
-  gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, 0, 0);
+  gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, way_base(), way_limit());
   for (std::size_t i = 0; i < lights_.size(); ++i) gpu.lights[i] = gpu_light(lights_[i], view.origin_mm);
   update_buffer(view_uniforms_, std::as_bytes(std::span(&gpu, 1)));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_uniforms_.id());
@@ -184,6 +185,18 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
+}
+
+float RasterScene::way_base() const {
+  return float(scene_.optics.size() + 1);
+}
+
+float RasterScene::way_limit() const {
+  // A float holds whole numbers up to 2^24.
+  float limit = 1;
+  if (scene_.optics.empty()) return limit;
+  while (limit * way_base() * way_base() <= float(1 << 24)) limit *= way_base();
+  return limit;
 }
 
 void RasterScene::set_mesh_origin(const RasterView& view, const glm::dvec3& mesh_origin_mm) {
@@ -221,6 +234,7 @@ void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
 
 void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
   begin_view(view, pass.level_bias);
+  if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   const glm::vec4 background(scene_.environment.color, 1);
   glClearBufferfv(GL_COLOR, 0, &background.x);
   const float farthest = 0;
@@ -309,13 +323,19 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
 
 void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
+  glEnable(GL_CULL_FACE);
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
+    if (std::find(pass.nested.begin(), pass.nested.end(), i) != pass.nested.end()) continue;
     set_mesh_origin(view, optics_[i]);
-    set_vec3(kAlbedo, scene_.optics[i].reflectance);
     set_vec3(kEmissive, glm::vec3(0));
-    optics_[i].draw_surface();
+    for (const bool reflecting : {true, false}) {
+      set_vec3(kAlbedo, reflecting ? scene_.optics[i].reflectance : glm::vec3(kOpticBackAlbedo));
+      glCullFace(reflecting == scene_.optics[i].flip ? GL_FRONT : GL_BACK);
+      optics_[i].draw_surface();
+    }
   }
+  glDisable(GL_CULL_FACE);
 }
 
 void RasterScene::draw_sky(const RasterPass& pass) {

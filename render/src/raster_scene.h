@@ -30,6 +30,7 @@ struct RasterPass {
   double clip_reach_mm = 0;               ///< that depth is nowhere beyond this distance along the view
   bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
   std::optional<std::size_t> except;      ///< ... but not this one
+  std::span<const std::size_t> nested{};  ///< ... nor these, which show their own maps
 };
 
 /// Everything static is uploaded once, positions in the meshes' own coordinates. Needs a current context
@@ -105,6 +106,9 @@ class RasterScene {
     bool clip;
   };
 
+  /// Of the numbers of ways by several optics, see raster_shown.glsl.
+  [[nodiscard]] float way_base() const;
+  [[nodiscard]] float way_limit() const;
   void upload_surroundings();
   void upload_textures(const SceneTextures& textures);
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;

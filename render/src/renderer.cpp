@@ -82,6 +82,7 @@ struct Gpu {
   Gpu(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays,
       const cad_import::BoundingBox& bounds)
       : raster(scene, textures),
+        picture(scene.optics.size()),
         pvrr(scene, raster, rays, bounds),
         cubemap(scene, raster),
         hybrid(scene, raster),

@@ -176,6 +176,7 @@ TEST(PvrrTwoMirrors, EachShowsTheOtherAsADiffuseBody) {
   scene.settings.depth = 1;
   scene.optics = {conic_mirror(0, 0, 170, 110, 3, 3), facing_mirror()};
   scene.optics[1].reflectance = {0.9f, 0.5f, 0.1f};
+  scene.settings.depth = 1;
   scene.camera.eye_mm = {-250, 100, 700};
   Renderer renderer(scene);
   const Frame exact = renderer.render(Mode::raytrace, scene.camera, picture_of(scene)).frame;
