@@ -37,12 +37,14 @@ void expect(double found, double known, double error, const char* what) {
   if (!good) ++wrong;
 }
 
-void check_finite(const json& points) {
+/// A focimeter looks along no line of sight, and has no distortion.
+void check_finite(const json& points, bool as_worn) {
   std::size_t passed = 0;
   for (const json& point : points) {
     if (point.at("end") != "passed") continue;
     ++passed;
     for (const auto& [key, value] : point.items()) {
+      if (key == "distortion" && !as_worn && value.is_null()) continue;
       if (key == "end" || (value.is_number() && std::isfinite(value.get<double>()))) continue;
       std::printf("x  %s is %s\n", key.c_str(), value.dump().c_str());
       ++wrong;
@@ -84,7 +86,7 @@ void check(const std::string& file, const Known& known) {
     expect(sphere + 0.5 * cylinder, f1 / (1 - 0.001 * known.thickness_mm / kIndex * f1) + f2,
            4 * n * known.curvature_error, "back vertex power, D");
     expect(cylinder, 0, known.cylinder_error_d, "cylinder, D");
-    check_finite(report.at("points"));
+    check_finite(report.at("points"), std::string_view(mode) == "as-worn");
   }
 }
 
