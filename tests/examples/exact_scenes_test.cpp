@@ -53,9 +53,10 @@ TEST_P(ExactScenes, ShowWhatExactRaysMeet) {
     EXPECT_LE(j.wrong(), kMostWrong) << j.other << " outline, " << j.turned << " turned, " << j.elsewhere
                                      << " elsewhere";
     EXPECT_LE(j.share(j.discolored), kMostDiscolored);
-    if (!shows_optics)
+    if (!shows_optics) {
       EXPECT_LE(j.retraced_share(),
                 optic.kind == optics::OpticKind::mirror ? kMostRetracedMirror : kMostRetracedLens);
+    }
   }
 }
 
