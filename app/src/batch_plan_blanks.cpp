@@ -23,21 +23,6 @@ void set(LensBlank& blank, const BlankNumber& number, double value) {
     blank.*number.optional_value = value;
 }
 
-std::vector<LensBlank> grid_of(const std::string& plan, const LensBlank& base,
-                               const std::vector<BlankSweep>& sweeps) {
-  std::size_t count = 1;
-  for (const BlankSweep& s : sweeps) count = case_product(plan, count, s.sweep.values.size());
-  std::vector<LensBlank> blanks(count, base);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t rest = i;  // the last key runs fastest
-    for (auto s = sweeps.rbegin(); s != sweeps.rend(); ++s) {
-      set(blanks[i], *s->number, s->sweep.values[rest % s->sweep.values.size()]);
-      rest /= s->sweep.values.size();
-    }
-  }
-  return blanks;
-}
-
 /// Each key draws by itself, so that one key more or less changes no other. In a sample of this table (`own`)
 /// ranges and lists have been drawn from a stream per key since version 0.1, and still are.
 std::vector<LensBlank> sample_of(const PlanSample& sample, bool own, const LensBlank& base,
@@ -88,7 +73,10 @@ std::vector<LensBlank> read_blanks(const TomlTable& table, const PlanContext& co
   if (table.has("outline")) base.outline = read_outline_key(table, context);
   const auto front = table.choice("front", {"sphere", "conic", "asphere", "freeform"});
   auto blanks =
-      sample ? sample_of(*sample, !context.sample, base, sweeps) : grid_of(table.file(), base, sweeps);
+      sample ? sample_of(*sample, !context.sample, base, sweeps)
+             : grid_of(table.file(), base, sweeps, [](LensBlank& blank, const BlankSweep& s, double value) {
+                 set(blank, *s.number, value);
+               });
   for (LensBlank& blank : blanks) blank.front = front ? *front_from_name(*front) : needed_front(blank);
   return blanks;
 }

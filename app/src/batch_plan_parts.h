@@ -83,4 +83,22 @@ inline constexpr std::string_view kMaterialKeys[] = {"material", "materials", "m
 /// Throws where a * b would be more cases than a plan may have; returns the product.
 [[nodiscard]] std::size_t case_product(const std::string& plan, std::size_t a, std::size_t b);
 
+/// The cross product of `sweeps`, each with a `sweep`, over `base`; the last runs fastest. `set` gives one
+/// its value. Throws as case_product().
+template <typename Item, typename KeySweep, typename Set>
+[[nodiscard]] std::vector<Item> grid_of(const std::string& plan, const Item& base,
+                                        const std::vector<KeySweep>& sweeps, const Set& set) {
+  std::size_t count = 1;
+  for (const KeySweep& s : sweeps) count = case_product(plan, count, s.sweep.values.size());
+  std::vector<Item> items(count, base);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t rest = i;
+    for (auto s = sweeps.rbegin(); s != sweeps.rend(); ++s) {
+      set(items[i], *s, s->sweep.values[rest % s->sweep.values.size()]);
+      rest /= s->sweep.values.size();
+    }
+  }
+  return items;
+}
+
 }  // namespace catoptra::app

@@ -60,21 +60,6 @@ struct PoseSweep {
   Sweep sweep;
 };
 
-std::vector<PlanPose> grid_of(const std::string& plan, const PlanPose& base,
-                              const std::vector<PoseSweep>& sweeps) {
-  std::size_t count = 1;
-  for (const PoseSweep& s : sweeps) count = case_product(plan, count, s.sweep.values.size());
-  std::vector<PlanPose> poses(count, base);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t rest = i;  // the last key runs fastest
-    for (auto s = sweeps.rbegin(); s != sweeps.rend(); ++s) {
-      s->number->value(poses[i]) = s->sweep.values[rest % s->sweep.values.size()];
-      rest /= s->sweep.values.size();
-    }
-  }
-  return poses;
-}
-
 std::vector<PlanPose> read_poses(const TomlTable& table, const PlanContext& context) {
   PlanPose base;
   if (table.choice("mode", {"lensmeter", "as-worn"}) == "as-worn")
@@ -85,7 +70,9 @@ std::vector<PlanPose> read_poses(const TomlTable& table, const PlanContext& cont
   for (const PoseNumber& number : kPoseNumbers)
     if (auto sweep = read_sweep(table, number.key, number.range, sample.has_value()))
       sweeps.push_back({&number, std::move(*sweep)});
-  if (!sample) return grid_of(context.name, base, sweeps);
+  if (!sample)
+    return grid_of(context.name, base, sweeps,
+                   [](PlanPose& pose, const PoseSweep& s, double value) { s.number->value(pose) = value; });
   std::vector<PlanPose> poses(sample->count, base);
   for (const PoseSweep& s : sweeps) {
     const auto values = values_of(s.sweep, sample, s.number->key);

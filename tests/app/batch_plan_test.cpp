@@ -6,6 +6,7 @@
 
 #include "app/batch.h"
 #include "cad_import/error.h"
+#include "tests/app/batch_plans.h"
 #include "tests/app/temporary_folder.h"
 
 namespace catoptra::test {
@@ -14,25 +15,6 @@ namespace {
 using nlohmann::json;
 
 const std::string kOneLens = "[[prescriptions]]\nsph = -4\nmaterial = \"CR-39\"\n";
-
-app::BatchPlan read(const std::string& text) {
-  return app::read_batch_plan_text(text, "plan.toml", std::filesystem::current_path());
-}
-
-std::string refusal(const std::string& text) {
-  try {
-    (void)read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-std::vector<double> column(const app::BatchPlan& plan, const std::string& name) {
-  std::vector<double> values;
-  for (const auto& entry : plan.cases) values.push_back(json::parse(entry.inputs).at(name).get<double>());
-  return values;
-}
 
 TEST(BatchPlan, IsTheCrossProductInThePlansOrder) {
   const app::BatchPlan plan = read(

@@ -12,30 +12,12 @@
 #include "app/src/counter_random.h"
 #include "cad_import/error.h"
 #include "tests/app/batch_files.h"
+#include "tests/app/batch_plans.h"
 
 namespace catoptra::test {
 namespace {
 
 using nlohmann::json;
-
-app::BatchPlan read(const std::string& text) {
-  return app::read_batch_plan_text(text, "plan.toml", std::filesystem::current_path());
-}
-
-std::string refusal(const std::string& text) {
-  try {
-    (void)read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-std::vector<double> column(const app::BatchPlan& plan, const std::string& name) {
-  std::vector<double> values;
-  for (const auto& entry : plan.cases) values.push_back(json::parse(entry.inputs).at(name).get<double>());
-  return values;
-}
 
 std::vector<std::string> keys_of(const app::BatchPlan& plan) {
   std::vector<std::string> keys;
