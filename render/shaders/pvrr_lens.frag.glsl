@@ -14,7 +14,6 @@ layout(binding = 2) uniform sampler2D map_color;
 // The ray that map coordinates (s, t) show: origin and direction, each as value at (0, 0), change by s, change by t.
 layout(location = 8) uniform mat3 map_ray_origin;
 layout(location = 9) uniform mat3 map_ray_direction;
-layout(location = 17) uniform int geometry_sample;  // the wavelength that geometry is written of
 layout(binding = 3) uniform sampler2D map_position;
 layout(binding = 4) uniform sampler2D map_normal;
 #endif
@@ -41,8 +40,8 @@ void main() {
 #endif
   out_color = vec4(color, 1.0);
 #ifdef GEOMETRY
-  bool seen = open && v_shown[geometry_sample].w > 0.0;
-  vec2 st = v_shown[geometry_sample].xy / v_shown[geometry_sample].z;
+  bool seen = open && v_shown[0].w > 0.0;
+  vec2 st = v_shown[0].xy / v_shown[0].z;
   vec3 ray = map_ray_direction * vec3(1.0, st);
   vec3 surface = v_exit.xyz + origin.xyz;
   vec4 shown = vec4(normalize(ray), 0.0), last = vec4(surface, 0.0);

@@ -21,16 +21,7 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   const double total_ms = gl_time_ms([&] {
     pass2_ms = gl_time_ms([&] {
       picture.begin(options);
-      const RasterView view = camera_view(camera, size, camera.offset_px);
-      for (const auto& [target, geometry] : picture.passes(options.geometry)) {
-        RasterPass pass;
-        pass.geometry = geometry;
-        target->bind(geometry);
-        raster_.draw(view, pass);
-        mask_.begin(size, &target->depth(), target->multisample());
-        mask_.draw(view);
-      }
-      picture.add_sample();
+      draw_around_optics(raster_, mask_, picture, camera, options);
       marks = mask_.marks();
       pixels = marked_pixels(marks);
       outline = mask_.outline();
@@ -71,19 +62,8 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
 }
 
 void ExactFrame::start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels) {
-  const std::size_t count = std::size_t(options.width) * std::size_t(options.height);
-  traced_.width = options.width;
-  traced_.height = options.height;
-  traced_.color.resize(count);
-  owner_.resize(count);
-  if (options.geometry) {
-    traced_.position.resize(count);
-    traced_.surface.resize(count);
-    traced_.direction.resize(count);
-    traced_.optic_id.resize(count);
-    traced_.bounces.resize(count);
-    traced_.path.resize(count);
-  }
+  allocate(traced_, options);
+  owner_.resize(traced_.color.size());
   for (const std::uint32_t i : pixels) {
     traced_.color[i] = {0, 0, 0, 1};
     owner_[i] = -1;
@@ -94,8 +74,6 @@ void ExactFrame::take_traced(std::span<const std::uint32_t> pixels, RenderResult
   Frame& frame = result.frame;
   for (const std::uint32_t i : pixels) frame.color[i] = traced_.color[i];
   if (frame.optic_id.empty()) return;
-  frame.bounces.assign(frame.optic_id.size(), 0);
-  frame.path.assign(frame.optic_id.size(), 0);
   for (const std::uint32_t i : pixels) {
     frame.position[i] = traced_.position[i];
     frame.surface[i] = traced_.surface[i];

@@ -10,20 +10,10 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
                                  const RayTracer& tracer) {
   RenderResult result;
   double raster_ms = 0, readback_ms = 0, trace_ms = 0;
-  const glm::ivec2 size(options.width, options.height);
   const double total_ms = gl_time_ms([&] {
     raster_ms = gl_time_ms([&] {
       picture.begin(options);
-      const RasterView view = camera_view(camera, size, camera.offset_px);
-      for (const auto& [target, geometry] : picture.passes(options.geometry)) {
-        RasterPass pass;
-        pass.geometry = geometry;
-        target->bind(geometry);
-        raster_.draw(view, pass);
-        mask_.begin(size, &target->depth(), target->multisample());
-        mask_.draw(view);
-      }
-      picture.add_sample();
+      draw_around_optics(raster_, mask_, picture, camera, options);
     });
     std::vector<std::uint32_t> pixels, outline;
     readback_ms = gl_time_ms([&] {

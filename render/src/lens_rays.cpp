@@ -116,17 +116,6 @@ std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens) {
   return samples;
 }
 
-std::vector<std::size_t> extreme_samples(std::size_t count) {
-  if (count <= 1) return {0};
-  if (count == 2) return {0, 1};
-  return {0, count / 2, count - 1};  // the first and the middle one have changed places
-}
-
-std::size_t extreme_sample(std::size_t count, std::size_t extreme) {
-  const auto samples = extreme_samples(count);
-  return samples[std::min(extreme, samples.size() - 1)];
-}
-
 LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                           const glm::dvec3& eye_mm) {
   return refract_eye_rays(lens, tracer, eye_mm, optics::side_towards(lens, eye_mm));

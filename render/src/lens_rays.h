@@ -37,13 +37,6 @@ struct LensRays {
 /// spectral_samples() with the middle one, to which geometry belongs, first.
 [[nodiscard]] std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens);
 
-/// Of `count` samples in the order of samples_of(): the reference wavelength, then the shortest and the
-/// longest, as far as they are others. All that lies between them turns less than they do.
-[[nodiscard]] std::vector<std::size_t> extreme_samples(std::size_t count);
-
-/// Number `extreme` of them, or the last where there are fewer.
-[[nodiscard]] std::size_t extreme_sample(std::size_t count, std::size_t extreme);
-
 /// Without scene hits: depends on the positions of eye and lens alone.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm);

@@ -97,4 +97,19 @@ std::vector<std::uint32_t> OpticMask::outline() const {
   return pixels;
 }
 
+void draw_around_optics(RasterScene& raster, OpticMask& mask, RasterPicture& picture, const Camera& camera,
+                        const FrameOptions& options) {
+  const glm::ivec2 size(options.width, options.height);
+  const RasterView view = camera_view(camera, size, camera.offset_px);
+  for (const auto& [target, geometry] : picture.passes(options.geometry)) {
+    RasterPass pass;
+    pass.geometry = geometry;
+    target->bind(geometry);
+    raster.draw(view, pass);
+    mask.begin(size, &target->depth(), target->multisample());
+    mask.draw(view);
+  }
+  picture.add_sample();
+}
+
 }  // namespace catoptra::render

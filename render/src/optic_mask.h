@@ -7,6 +7,7 @@
 
 #include "render/scene.h"
 #include "render/src/gl_objects.h"
+#include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
 #include "render/src/raster_view.h"
 
@@ -46,5 +47,9 @@ class OpticMask {
   int multisample_ = 1;
   GlProgram program_;
 };
+
+/// Draws everything but the optics into `picture`, which has begun, and the optics that show into `mask`.
+void draw_around_optics(RasterScene& raster, OpticMask& mask, RasterPicture& picture, const Camera& camera,
+                        const FrameOptions& options);
 
 }  // namespace catoptra::render

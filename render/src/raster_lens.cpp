@@ -12,7 +12,7 @@ namespace {
 // As in raster_lens.vert.glsl and raster_lens.glsl.
 constexpr GLuint kExitAttribute = 2, kMaskAttribute = 3, kShownAttribute = 4;
 constexpr GLuint kMaskUnit = 5;
-constexpr GLint kBlockedColor = 3, kOpticId = 6, kCounts = 11, kWeight = 12, kGeometrySample = 17;
+constexpr GLint kBlockedColor = 3, kOpticId = 6, kCounts = 11, kWeight = 12;
 
 // Wavelengths per draw: attributes and interpolants for this many are there in any OpenGL 4.5.
 constexpr std::size_t kSamplesPerDraw = 4;
@@ -94,7 +94,6 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
     if (look == LensLook::map) glUniform1i(kCounts, b == 0);
     glUniformMatrix3fv(kWeight, GLsizei(batch.weights.size()), GL_FALSE, &batch.weights[0][0].x);
     glBindTextureUnit(kMaskUnit, mask_->texture().id());
-    if (geometry && b == 0 && look != LensLook::cube) glUniform1i(kGeometrySample, 0);
     for (std::size_t part = 0; part < side_->part_count(); ++part) {
       set_look(part, geometry && b == 0);
       side_->draw_part(part, batch.array);
@@ -104,32 +103,6 @@ void RasterLens::draw(const RasterView& camera, const RasterTarget& target, bool
   glDepthFunc(GL_GREATER);
   glDisable(GL_BLEND);
   target.bind(geometry);
-}
-
-void RasterLens::draw_geometry(const RasterView& camera, const RasterTarget& target, std::size_t sample,
-                               LensPrograms& programs, std::size_t index, const SetLook& set_look) const {
-  const Batch& batch = batches_[sample / kSamplesPerDraw];
-  target.bind(true);
-  glColorMaski(0, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  glDepthFunc(GL_EQUAL);
-  glUseProgram(programs.program(LensLook::map, batch.weights.size(), true).id());
-  RasterScene::set_mesh_origin(camera, *side_);
-  glUniform1f(kOpticId, float(index));
-  glUniform1i(kCounts, 0);
-  glUniform1i(kGeometrySample, GLint(sample % kSamplesPerDraw));
-  glBindTextureUnit(kMaskUnit, mask_->texture().id());
-  for (std::size_t part = 0; part < side_->part_count(); ++part) {
-    set_look(part, true);
-    side_->draw_part(part, batch.array);
-  }
-  glDepthFunc(GL_GREATER);
-  glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
-
-std::size_t RasterLens::sample_count() const {
-  std::size_t count = 0;
-  for (const Batch& batch : batches_) count += batch.weights.size();
-  return count;
 }
 
 }  // namespace catoptra::render

@@ -47,13 +47,6 @@ class RasterLens {
             LensPrograms& programs, const optics::Optic& lens, std::size_t index, float ambient,
             const SetLook& set_look) const;
 
-  /// Writes the geometry of sample number `sample` of the rays in place of the first one's, where draw() has
-  /// drawn the lens with geometry into `target`; look: map. Colour and depth stay.
-  void draw_geometry(const RasterView& camera, const RasterTarget& target, std::size_t sample,
-                     LensPrograms& programs, std::size_t index, const SetLook& set_look) const;
-
-  [[nodiscard]] std::size_t sample_count() const;
-
  private:
   struct Batch {
     GlBuffer shown;

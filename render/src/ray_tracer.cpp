@@ -77,20 +77,6 @@ std::size_t for_packets(const FrameOptions& options, std::span<const std::uint32
   return count;
 }
 
-void allocate(Frame& frame, const FrameOptions& options) {
-  frame.width = options.width;
-  frame.height = options.height;
-  const std::size_t count = std::size_t(options.width) * std::size_t(options.height);
-  frame.color.resize(count);
-  if (!options.geometry) return;
-  frame.position.resize(count);
-  frame.surface.resize(count);
-  frame.direction.resize(count);
-  frame.optic_id.resize(count);
-  frame.bounces.resize(count);
-  frame.path.resize(count);
-}
-
 /// The layers that other modes may lack, which know of one optic along a path.
 void add_paths(Frame& frame) {
   if (!frame.path.empty()) return;
@@ -108,6 +94,20 @@ void add_paths(Frame& frame) {
 const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic) {
   static const tessellate::OpticArrays none;
   return optic.kind == optics::OpticKind::mirror ? optic.mesh : none;
+}
+
+void allocate(Frame& frame, const FrameOptions& options) {
+  frame.width = options.width;
+  frame.height = options.height;
+  const std::size_t count = std::size_t(options.width) * std::size_t(options.height);
+  frame.color.resize(count);
+  if (!options.geometry) return;
+  frame.position.resize(count);
+  frame.surface.resize(count);
+  frame.direction.resize(count);
+  frame.optic_id.resize(count);
+  frame.bounces.resize(count);
+  frame.path.resize(count);
 }
 
 struct RayTracer::Impl {

@@ -19,6 +19,9 @@ namespace catoptra::render {
 [[nodiscard]] const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic);
 
 /// Objects of the shared ray scene: surroundings 0 .. surroundings.size() - 1, then the optics in order.
+/// Gives `frame` the options' size, and room for colours and, where asked for, geometry. Keeps its memory.
+void allocate(Frame& frame, const FrameOptions& options);
+
 class RayTracer {
  public:
   /// Keeps references to all three, which must outlive it.

@@ -163,18 +163,18 @@ void TracedChains::meet_mirrors(const BeamLanes& beams, const MetOptics& met, Me
 }
 
 std::size_t TracedChains::follow(const ChainLanes& from, const MetOptics& met, int depth,
-                                 const ChainTask& task, Float4 (&radiance)[kLanes], ChainEnds* ends) const {
+                                 Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   bool any_mirror = false, any_lens = false;
   for (const int optic : met.optic) {
     if (optic < 0) continue;
     (mirrors_[std::size_t(optic)] ? any_mirror : any_lens) = true;
   }
-  return (any_mirror ? reflect(from, met, depth, task, radiance, ends) : 0) +
-         (any_lens ? refract(from, met, depth, task, radiance, ends) : 0);
+  return (any_mirror ? reflect(from, met, depth, radiance, ends) : 0) +
+         (any_lens ? refract(from, met, depth, radiance, ends) : 0);
 }
 
 std::size_t TracedChains::reflect(const ChainLanes& from, const MetOptics& met, int depth,
-                                  const ChainTask& task, Float4 (&radiance)[kLanes], ChainEnds* ends) const {
+                                  Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   MetLanes at;
   meet_mirrors(from.beams, met, at);
   ChainLanes to{};
@@ -189,7 +189,7 @@ std::size_t TracedChains::reflect(const ChainLanes& from, const MetOptics& met, 
   }
   load_rays(to);
   Float4 seen[kLanes] = {};
-  const std::size_t rays = leave(to, depth - 1, task, seen, ends);
+  const std::size_t rays = leave(to, depth - 1, seen, ends);
   for (int i = 0; i < kLanes; ++i) {
     if (!to.left.active[i]) continue;
     const glm::vec3& tint = scene_.optics[std::size_t(met.optic[i])].reflectance;
@@ -199,7 +199,7 @@ std::size_t TracedChains::reflect(const ChainLanes& from, const MetOptics& met, 
 }
 
 std::size_t TracedChains::refract(const ChainLanes& from, const MetOptics& met, int depth,
-                                  const ChainTask& task, Float4 (&radiance)[kLanes], ChainEnds* ends) const {
+                                  Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   LensLanes lanes;
   lanes.any = true;
   lanes.eye = from.beams;
@@ -215,19 +215,18 @@ std::size_t TracedChains::refract(const ChainLanes& from, const MetOptics& met, 
     lanes.triangle[i] = met.triangle[i];
     distance[i] = from.offset_mm + double(met.distance[i]);
     radiance[i] = Float4{};
-    if (!task.extreme && from.wavelength[i] < 0)
+    if (from.wavelength[i] < 0)
       passes = std::max(passes, lenses_.sample_count_of(std::size_t(lanes.optic[i])));
   }
   lenses_.meet_entries(distance, lanes);
   std::size_t rays = 0;
   for (std::size_t pass = 0; pass < passes; ++pass)
-    rays += refract_pass(from, lanes, pass, depth, task, radiance, pass == 0 ? ends : nullptr);
+    rays += refract_pass(from, lanes, pass, depth, radiance, pass == 0 ? ends : nullptr);
   return rays;
 }
 
 std::size_t TracedChains::refract_pass(const ChainLanes& from, const LensLanes& lanes, std::size_t pass,
-                                       int depth, const ChainTask& task, Float4 (&radiance)[kLanes],
-                                       ChainEnds* ends) const {
+                                       int depth, Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   TracedLenses::IndexLanes indices = {};
   bool splits[kLanes];
   std::size_t sample[kLanes];
@@ -236,7 +235,7 @@ std::size_t TracedChains::refract_pass(const ChainLanes& from, const LensLanes& 
     const auto optic = std::size_t(lanes.optic[i]);
     const std::size_t count = lenses_.sample_count_of(optic);
     splits[i] = from.wavelength[i] < 0 && count > 1;
-    sample[i] = !splits[i] ? 0 : task.extreme ? extreme_sample(count, *task.extreme) : pass;
+    sample[i] = splits[i] ? pass : 0;
     if (splits[i])
       indices[i] = lenses_.indices(optic, sample[i]);
     else if (pass == 0)
@@ -259,7 +258,7 @@ std::size_t TracedChains::refract_pass(const ChainLanes& from, const LensLanes& 
         splits[i] ? lenses_.wavelength(std::size_t(lanes.optic[i]), sample[i]) : from.wavelength[i];
   }
   Float4 seen[kLanes] = {};
-  const std::size_t rays = leave(to, depth - 1, task, seen, ends);
+  const std::size_t rays = leave(to, depth - 1, seen, ends);
   for (int i = 0; i < kLanes; ++i) {
     if (!indices[i]) continue;
     if (ends && !out.passed[i]) write_blocked_end(from, i, lanes.entry, *ends);
@@ -272,15 +271,14 @@ std::size_t TracedChains::refract_pass(const ChainLanes& from, const LensLanes& 
   return rays;
 }
 
-std::size_t TracedChains::leave(ChainLanes& to, int depth, const ChainTask& task, Float4 (&seen)[kLanes],
-                                ChainEnds* ends) const {
+std::size_t TracedChains::leave(ChainLanes& to, int depth, Float4 (&seen)[kLanes], ChainEnds* ends) const {
   query_past_own(rays_, static_cast<std::uint32_t>(scene_.surroundings.size()), to.left.optic, to.rays);
   std::size_t rays = 0;
   for (const bool active : to.left.active) rays += active ? 1 : 0;
-  if (task.colors) shade(to, seen);
+  shade(to, seen);
   if (ends) write_ends(to, *ends);
   MetOptics met;
-  if (depth > 0 && find_next(to.rays, to.left, met)) rays += follow(to, met, depth, task, seen, ends);
+  if (depth > 0 && find_next(to.rays, to.left, met)) rays += follow(to, met, depth, seen, ends);
   return rays;
 }
 

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "optics/ray_scene.h"
@@ -14,14 +13,6 @@
 #include "render/src/shading.h"
 
 namespace catoptra::render {
-
-/// What is wanted of paths.
-struct ChainTask {
-  bool colors = true;  ///< false: geometry alone
-  /// Of a lens that splits light: one wavelength, number `*extreme` of extreme_samples() (the last of them
-  /// where there are fewer); nullopt: all. Geometry is that of the first wavelength traced.
-  std::optional<std::size_t> extreme;
-};
 
 /// Follows rays that have left an optic. A path goes on where it meets the reflecting side of a mirror or
 /// either side of a lens, the optic that it has just left included, until RenderSettings::depth optics lie
@@ -56,20 +47,19 @@ class TracedChains {
   void meet_mirrors(const BeamLanes& beams, const MetOptics& met, MetLanes& at) const;
 
   /// Follows the lanes of `from` that meet an optic, `depth` of them at most (1 or more): writes their
-  /// radiance where the task wants colours, and `ends` where given; other lanes stay. Returns the number of
+  /// radiance, and `ends` where given; other lanes stay. Returns the number of
   /// rays.
-  std::size_t follow(const ChainLanes& from, const MetOptics& met, int depth, const ChainTask& task,
-                     Float4 (&radiance)[kLanes], ChainEnds* ends) const;
+  std::size_t follow(const ChainLanes& from, const MetOptics& met, int depth, Float4 (&radiance)[kLanes],
+                     ChainEnds* ends) const;
 
  private:
-  std::size_t reflect(const ChainLanes& from, const MetOptics& met, int depth, const ChainTask& task,
-                      Float4 (&radiance)[kLanes], ChainEnds* ends) const;
-  std::size_t refract(const ChainLanes& from, const MetOptics& met, int depth, const ChainTask& task,
-                      Float4 (&radiance)[kLanes], ChainEnds* ends) const;
+  std::size_t reflect(const ChainLanes& from, const MetOptics& met, int depth, Float4 (&radiance)[kLanes],
+                      ChainEnds* ends) const;
+  std::size_t refract(const ChainLanes& from, const MetOptics& met, int depth, Float4 (&radiance)[kLanes],
+                      ChainEnds* ends) const;
   std::size_t refract_pass(const ChainLanes& from, const LensLanes& lanes, std::size_t pass, int depth,
-                           const ChainTask& task, Float4 (&radiance)[kLanes], ChainEnds* ends) const;
-  std::size_t leave(ChainLanes& to, int depth, const ChainTask& task, Float4 (&seen)[kLanes],
-                    ChainEnds* ends) const;
+                           Float4 (&radiance)[kLanes], ChainEnds* ends) const;
+  std::size_t leave(ChainLanes& to, int depth, Float4 (&seen)[kLanes], ChainEnds* ends) const;
   void shade(const ChainLanes& lanes, Float4 (&seen)[kLanes]) const;
 
   /// A mirror's patches, fitted when a path first meets it so.

@@ -254,8 +254,7 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
       write_lens_geometry(pixels, p.lens, out, *geometry);
       write_shown(pixels, found, *geometry);
     }
-    if (chains_.possible())
-      rays += follow_lenses(pixels, p, sample, {}, out, {sample == 0 ? geometry : nullptr});
+    if (chains_.possible()) rays += follow_lenses(pixels, p, sample, out, sample == 0 ? geometry : nullptr);
     lenses_.add_colors(sample, out, p.lens);
   }
   return rays;
@@ -298,7 +297,7 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
   }
   std::size_t rays = 0;
   if (p.any_mirror && chains_.possible())
-    rays += follow_mirrors(camera, pixels, p, {}, {geometry ? &frame : nullptr});
+    rays += follow_mirrors(camera, pixels, p, geometry ? &frame : nullptr);
   if (p.lens.any)
     rays += refract(view, pixels, mapped ? &mapped->maps : nullptr, p, geometry ? &frame : nullptr);
   for (int i = 0; i < kLanes; ++i) {

@@ -80,17 +80,15 @@ class PacketTracer {
   void write_geometry(const CameraRays& camera, const PixelPacket& pixels, const Packet& p,
                       Frame& frame) const;
 
-  /// Where the geometry of paths of several optics goes: the frame has it already as if the first optic were
-  /// the last. Null: nowhere.
-  struct GeometrySink {
-    Frame* frame = nullptr;
-  };
+  // Paths of several optics; `geometry`, or null, has been written as if the first optic were the last.
   std::size_t follow_mirrors(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
-                             const ChainTask& task, const GeometrySink& sink) const;
-  std::size_t follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample, const ChainTask& task,
-                            RefractedLanes& out, const GeometrySink& sink) const;
+                             Frame* geometry) const;
+  std::size_t follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample, RefractedLanes& out,
+                            Frame* geometry) const;
+  std::size_t follow(const PixelPacket& pixels, const ChainLanes& from, const MetOptics& met,
+                     ShadeLanes& shade, bool (&traced)[PixelPacket::kLanes], Frame* geometry) const;
   static void write_ends(const PixelPacket& pixels, const MetOptics& met, const ChainEnds& ends,
-                         const GeometrySink& sink);
+                         Frame& frame);
 
   const Scene& scene_;
   const optics::RayScene& rays_;

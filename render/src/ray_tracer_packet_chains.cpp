@@ -23,7 +23,7 @@ void set_first(const LeftOptics& left, ChainLanes& from) {
 }  // namespace
 
 std::size_t PacketTracer::follow_mirrors(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
-                                         const ChainTask& task, const GeometrySink& sink) const {
+                                         Frame* geometry) const {
   LeftOptics left;
   const MirrorLanes& mirror = p.mirror;
   for (int i = 0; i < kLanes; ++i) {
@@ -56,22 +56,11 @@ std::size_t PacketTracer::follow_mirrors(const CameraRays& camera, const PixelPa
   MetLanes at;
   chains_.meet_mirrors(eye, first, at);
   reflect_beams(eye, at, from.beams);
-  Float4 seen[kLanes];
-  ChainEnds ends;
-  const std::size_t rays =
-      chains_.follow(from, met, chains_.depth() - 1, task, seen, sink.frame ? &ends : nullptr);
-  for (int i = 0; i < kLanes; ++i)
-    if (met.optic[i] >= 0) {
-      p.shade.radiance[i] = seen[i];
-      p.traced[i] = true;
-    }
-  if (sink.frame) write_ends(pixels, met, ends, sink);
-  return rays;
+  return follow(pixels, from, met, p.shade, p.traced, geometry);
 }
 
 std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample,
-                                        const ChainTask& task, RefractedLanes& out,
-                                        const GeometrySink& sink) const {
+                                        RefractedLanes& out, Frame* geometry) const {
   LeftOptics left;
   for (int i = 0; i < kLanes; ++i) {
     left.active[i] = pixels.active[i] && out.passed[i];
@@ -90,22 +79,26 @@ std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, Packet& p, st
   from.offset_mm = optics::kSelfHitDistance_mm;
   for (int i = 0; i < kLanes; ++i)
     if (left.active[i]) from.wavelength[i] = lenses_.wavelength(std::size_t(left.optic[i]), sample);
+  return follow(pixels, from, met, out.shade, p.traced, geometry);
+}
+
+std::size_t PacketTracer::follow(const PixelPacket& pixels, const ChainLanes& from, const MetOptics& met,
+                                 ShadeLanes& shade, bool (&traced)[PixelPacket::kLanes],
+                                 Frame* geometry) const {
   Float4 seen[kLanes];
   ChainEnds ends;
-  const std::size_t rays =
-      chains_.follow(from, met, chains_.depth() - 1, task, seen, sink.frame ? &ends : nullptr);
+  const std::size_t rays = chains_.follow(from, met, chains_.depth() - 1, seen, geometry ? &ends : nullptr);
   for (int i = 0; i < kLanes; ++i)
     if (met.optic[i] >= 0) {
-      out.shade.radiance[i] = seen[i];
-      p.traced[i] = true;
+      shade.radiance[i] = seen[i];
+      traced[i] = true;
     }
-  if (sink.frame) write_ends(pixels, met, ends, sink);
+  if (geometry) write_ends(pixels, met, ends, *geometry);
   return rays;
 }
 
 void PacketTracer::write_ends(const PixelPacket& pixels, const MetOptics& met, const ChainEnds& ends,
-                              const GeometrySink& sink) {
-  Frame& frame = *sink.frame;
+                              Frame& frame) {
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i] || met.optic[i] < 0) continue;
     const std::size_t at = index_of(pixels, i, frame);
