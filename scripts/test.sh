@@ -12,7 +12,7 @@ if [ -n "${CATOPTRA_CORPUS:-}" ]; then
   echo
   echo "Import of the files in \$CATOPTRA_CORPUS under AddressSanitizer"
   cmake --preset asan >/dev/null && cmake --build --preset asan --target test_cad_import_corpus &&
-    ctest --preset asan -L corpus -R '^corpus\.' -E '^corpus\.glass'
+    ctest --preset asan -L corpus_import
   asan=$?
   asan_text=$([ $asan -eq 0 ] && echo "passed" || echo "FAILED")
 else
