@@ -68,8 +68,7 @@ struct SceneReadOptions {
 /// Reads a scene file and every file it names; paths in it are relative to its folder. "-" reads standard
 /// input, with paths relative to the current folder. Throws catoptra::Error whose entity is "line N,
 /// table.key" for a key that is unknown, of the wrong type or out of range and for a file that is missing;
-/// ImportError for a file that cannot be imported. A scene that holds
-/// [[planar]] is checked in full and then refused: this version cannot show it.
+/// ImportError for a file that cannot be imported.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& file, const SceneReadOptions& options = {});
 
 /// The same from text; `name` stands for the file in messages, `folder` is where its paths start.

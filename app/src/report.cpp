@@ -48,7 +48,7 @@ ordered_json optics_json(const render::Scene& scene, render::Mode mode, const re
     const optics::Optic& optic = scene.optics[i];
     const render::OpticStats told = i < stats.optics.size() ? stats.optics[i] : render::OpticStats{};
     ordered_json entry{{"name", optic.name},
-                       {"kind", optic.kind == optics::OpticKind::mirror ? "mirror" : "lens"}};
+                       {"kind", optics::kind_name(optic.kind)}};
     if (errors) entry["pixels"] = errors->at(i).pixels;
     entry["vertices"] = told.vertices > 0 ? told.vertices : optic.mesh.vertices.size();
     entry["tessellated_vertices"] = optic.mesh.vertices.size();

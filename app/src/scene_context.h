@@ -67,9 +67,6 @@ void add_remaining_faces(const cad_import::CadModel& model, std::span<const int>
 void read_surroundings(const TomlTable& root, const SceneContext& context, SceneFile& result);
 void read_mirrors(const TomlTable& root, const SceneContext& context, SceneFile& result);
 void read_lenses(const TomlTable& root, const SceneContext& context, SceneFile& result);
-
-/// Checks every key of [[planar]] and returns how the refusal names the first of them; empty where there is
-/// none.
-[[nodiscard]] std::string check_planars(const TomlTable& root, const SceneContext& context);
+void read_planars(const TomlTable& root, const SceneContext& context, SceneFile& result);
 
 }  // namespace catoptra::app

@@ -20,14 +20,6 @@ double read_unit_mm(const TomlTable& root) {
   return *mm;
 }
 
-/// Planar optics are part of the format but not of this version: refused, not left out of the picture.
-void refuse_what_cannot_be_shown(const TomlTable& root, const SceneContext& context) {
-  const std::string entity = check_planars(root, context);
-  if (!entity.empty())
-    throw Error(context.name, entity, "this version of Catoptra does not render planar optics",
-                "remove the table, or use a [[mirror]] from a flat face");
-}
-
 std::string read_all(std::istream& stream) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -51,7 +43,6 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
   scene.lights = read_lights(root, context);
   scene.settings = read_render_settings(root, scene.warnings);
   result.evaluation = read_evaluation(root, context);
-  refuse_what_cannot_be_shown(root, context);
   for (const render::Light& light : scene.lights)
     if (light.shadows) {
       scene.warnings.push_back("this version renders no shadows: [[light]] shadows = true has no effect");
@@ -60,6 +51,7 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
   read_surroundings(root, context, result);
   read_mirrors(root, context, result);
   read_lenses(root, context, result);
+  read_planars(root, context, result);
   result.surrounding_sources.resize(scene.surroundings.size());  // rims of lenses
   return result;
 }

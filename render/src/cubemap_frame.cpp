@@ -78,7 +78,7 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   for (const optics::Optic& optic : scene_.optics)
     result.stats.optics.push_back({optic.name,
-                                   optic.kind == optics::OpticKind::mirror ? "mirror" : "lens",
+                                   optics::kind_name(optic.kind),
                                    optic.mesh.vertices.size(),
                                    0,
                                    0,

@@ -32,7 +32,7 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
   for (const optics::Optic& optic : scene_.optics)
     result.stats.optics.push_back(
         {optic.name,
-         optic.kind == optics::OpticKind::mirror ? "mirror" : "lens",
+         optics::kind_name(optic.kind),
          optic.mesh.vertices.size(),
          // Rays are traced by pixel and may meet several optics; a single one gets them all.
          scene_.optics.size() == 1 ? result.stats.rays : 0,

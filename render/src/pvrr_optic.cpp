@@ -345,7 +345,7 @@ glm::dvec2 PvrrOptic::map_offset(glm::dvec2 offset_px) const {
 
 OpticStats PvrrOptic::statistics() const {
   OpticStats stats{optic_.name,
-                   optic_.kind == OpticKind::mirror ? "mirror" : "lens",
+                   optics::kind_name(optic_.kind),
                    faces_eye_ ? vertex_count_ : tessellated_mesh().vertices.size(),
                    traced_rays_,
                    scene_rays_,
