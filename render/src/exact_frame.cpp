@@ -35,7 +35,7 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
       pvrr_.update(camera, without_geometry, 1);
     });
     pass1_ms = gl_time_ms([&] {
-      pvrr_.draw_maps(camera.offset_px, false, nullptr);
+      pvrr_.draw_maps(camera.offset_px, false, nullptr, true);
       pvrr_.copy_maps(maps_);
     });
     verify_ms = gl_time_ms([&] {

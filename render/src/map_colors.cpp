@@ -123,9 +123,9 @@ MapColors::Map MapColors::map_of(const RasterView& view) {
 /// Of a stored depth; kOtherRegion where what is stored belongs to the other view of the same map.
 [[gnu::always_inline]] inline float MapColors::clip_depth(const Map& map, float stored) {
   const float depth = (stored - map.depth_of_far) / (map.depth_of_near - map.depth_of_far);
-  // The depth that both views may store is the far end of neither.
-  const bool zooming = map.sense < 0;
-  const int own = int(depth >= 0) & (zooming ? int(depth < 1) : int(depth <= 1));
+  // The depth that both views may store is the far end of neither. A stored depth of 1, the zooming view's
+  // far end, is where nothing was drawn.
+  const int own = (map.sense < 0 ? int(depth > 0) : int(depth >= 0)) & int(depth < 1);
   return own ? depth : kOtherRegion;
 }
 

@@ -48,8 +48,8 @@ void PvrrFrame::update(const Camera& camera, const FrameOptions& options, int le
   stack_.update(camera_view(camera, {options.width, options.height}), options, levels);
 }
 
-void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  stack_.draw_maps(offset_px, geometry, overlay);
+void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone) {
+  stack_.draw_maps(offset_px, geometry, overlay, seen_alone);
 }
 
 void PvrrFrame::copy_maps(MapColors& maps) const {

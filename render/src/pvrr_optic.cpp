@@ -291,10 +291,10 @@ std::vector<std::vector<glm::dvec3>> PvrrOptic::lens_coordinates() const {
 }
 
 bool PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
-                         std::span<const NestedOptics> nested) {
+                         std::span<const NestedOptics> nested, bool seen_alone) {
   if (!faces_eye_) return false;
   const glm::dvec2 offset = map_offset(offset_px);
-  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_};
+  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_, seen_alone};
   if (!overlay && drawn_ == wanted) return false;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
@@ -303,10 +303,16 @@ bool PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
   for (std::size_t patch = 0; patch < views_.size(); ++patch)
     map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
               map_sizes_[patch].texels_per_pixel, offset, geometry, overlay,
-              patch < nested.size() ? &nested[patch] : nullptr);
+              patch < nested.size() ? &nested[patch] : nullptr,
+              seen_alone ? unseen_in(patch) : std::vector<TexelRect>());
   drawn_ = wanted;
   if (overlay) drawn_.reset();
   return true;
+}
+
+std::vector<TexelRect> PvrrOptic::unseen_in(std::size_t patch) const {
+  return unseen_parts(seen_mesh(), coordinates_, patches_of_seen(), std::uint32_t(patch),
+                      layout_.places[patch]);
 }
 
 RasterView PvrrOptic::map_camera(std::size_t patch) const {

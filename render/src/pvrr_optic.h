@@ -64,9 +64,10 @@ class PvrrOptic {
 
   /// Pass 1, unless the maps are there already; returns whether they were drawn. An `overlay` (or null) is
   /// drawn into them, and before that the optics that each shows by their own maps (`nested`: per patch, or
-  /// empty).
+  /// empty). `seen_alone`: nothing is drawn in parts of the maps that the optic does not show, see
+  /// unseen_parts().
   bool draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
-                std::span<const NestedOptics> nested = {});
+                std::span<const NestedOptics> nested = {}, bool seen_alone = false);
 
   /// The views of the patches' maps in the world, with their guard (after update(), of an optic that faces
   /// the eye), without sample offset; and the offset of their samples within their texels.
@@ -120,6 +121,7 @@ class PvrrOptic {
   void refine(const RasterView& camera, bool remember);
   void refine_lens(bool remember);
   void show();
+  [[nodiscard]] std::vector<TexelRect> unseen_in(std::size_t patch) const;
   [[nodiscard]] std::vector<std::vector<glm::dvec3>> lens_coordinates() const;
   void set_layout(std::vector<PvrrMapSize> sizes);
   [[nodiscard]] bool in_patches() const { return !patches_.ranges.empty(); }
@@ -186,6 +188,7 @@ class PvrrOptic {
     glm::dvec2 offset_px;
     bool geometry;
     int multisample;
+    bool seen_alone;
     bool operator==(const Drawn&) const = default;
   };
   std::optional<Drawn> drawn_;  ///< what the maps hold

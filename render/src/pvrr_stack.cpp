@@ -164,14 +164,15 @@ bool PvrrStack::may_show(const Node& node, const RasterView& map, std::size_t in
   return box_in_view(map, box).seen && reaches_light(node.optic, box);
 }
 
-void PvrrStack::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  for (const auto& root : roots_) draw_map(*root, offset_px, geometry, overlay);
+void PvrrStack::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone) {
+  for (const auto& root : roots_) draw_map(*root, offset_px, geometry, overlay, seen_alone);
 }
 
-bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone) {
   const glm::dvec2 in_map = node.optic.map_offset(offset_px);
   bool changed = false;
-  for (const auto& child : node.children) changed = draw_map(*child, in_map, geometry, nullptr) || changed;
+  for (const auto& child : node.children)
+    changed = draw_map(*child, in_map, geometry, nullptr, false) || changed;
   if (changed) node.optic.map_changed();
   for (std::size_t patch = 0; patch < node.nested.size(); ++patch)
     node.nested[patch].draw = [&, patch](const RasterView& view, const RasterPass& pass,
@@ -181,7 +182,7 @@ bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overla
           draw_.draw(child->optic, child->index, target, view, in_map,
                      {pass.geometry, true, pass.clip_depth != nullptr});
     };
-  node.drawn = node.optic.draw_map(offset_px, geometry, overlay, node.nested);
+  node.drawn = node.optic.draw_map(offset_px, geometry, overlay, node.nested, seen_alone);
   return node.drawn;
 }
 

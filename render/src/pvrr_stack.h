@@ -34,7 +34,8 @@ class PvrrStack {
   void update(const RasterView& camera, const FrameOptions& options, int levels);
 
   /// All maps that have to be drawn, the deepest first. Overlays go into those of the first level alone.
-  void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  /// `seen_alone`: see PvrrOptic::draw_map; not of maps in maps.
+  void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone = false);
 
   /// Of the first level: optics as the picture shows them.
   [[nodiscard]] std::size_t size() const { return roots_.size(); }
@@ -66,7 +67,7 @@ class PvrrStack {
   void update_children(Node& node, const FrameOptions& options, std::vector<Node*>& next);
   static void set_children(Node& node, std::vector<std::unique_ptr<Node>> children);
   [[nodiscard]] bool may_show(const Node& node, const RasterView& map, std::size_t index) const;
-  bool draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay);
+  bool draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone);
   template <typename Visit>
   void visit(const Visit& each);
   void bounds_changed(const cad_import::BoundingBox& bounds);
