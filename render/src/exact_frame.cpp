@@ -29,10 +29,10 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
       without_geometry.geometry = false;
       without_geometry.multisample = 1;  // colours of maps go with the depths of their texels
       // Where a ray meets another optic the tracer follows it: optics in optics need no maps.
-      pvrr_.update(camera, without_geometry, 1);
+      pvrr_.update(camera, without_geometry, 1, MapUse::exact_rays);
     });
     pass1_ms = gl_time_ms([&] {
-      pvrr_.draw_maps(camera.offset_px, false, nullptr, true);
+      pvrr_.draw_maps(camera.offset_px, false, nullptr);
       pvrr_.copy_maps(maps_);
     });
     verify_ms = gl_time_ms([&] {

@@ -34,6 +34,11 @@ struct OpticPlace {
   bool nested = false;                  ///< seen in another one's map: it is one patch then
 };
 
+/// What the maps are for. In a picture the optic's mesh shows them, with all that patches and refinement of
+/// the mesh are for. Exact rays find in a map what they meet wherever it shows that: patches are cut where a
+/// map would be too wide alone, and what no ray can ask for is not drawn (see unseen_parts()).
+enum class MapUse { picture, exact_rays };
+
 class PvrrOptic {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
@@ -56,7 +61,7 @@ class PvrrOptic {
   /// picture. `above`: the optic in whose map the camera sees this one, by way of which light comes here;
   /// null: none. It must outlive this, and its own update() must have been called.
   void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1,
-              const PvrrOptic* above = nullptr);
+              const PvrrOptic* above = nullptr, MapUse use = MapUse::picture);
 
   /// How light comes from the eye through this optic to a point beyond it, both in the world; nullopt where
   /// it does not.
@@ -64,10 +69,9 @@ class PvrrOptic {
 
   /// Pass 1, unless the maps are there already; returns whether they were drawn. An `overlay` (or null) is
   /// drawn into them, and before that the optics that each shows by their own maps (`nested`: per patch, or
-  /// empty). `seen_alone`: nothing is drawn in parts of the maps that the optic does not show, see
-  /// unseen_parts().
+  /// empty).
   bool draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
-                std::span<const NestedOptics> nested = {}, bool seen_alone = false);
+                std::span<const NestedOptics> nested = {});
 
   /// The views of the patches' maps in the world, with their guard (after update(), of an optic that faces
   /// the eye), without sample offset; and the offset of their samples within their texels.
@@ -188,12 +192,13 @@ class PvrrOptic {
     glm::dvec2 offset_px;
     bool geometry;
     int multisample;
-    bool seen_alone;
+    MapUse use;
     bool operator==(const Drawn&) const = default;
   };
   std::optional<Drawn> drawn_;  ///< what the maps hold
   PvrrMap map_;
   int multisample_ = 1;
+  MapUse use_ = MapUse::picture;
   std::size_t traced_rays_ = 0, scene_rays_ = 0, refinement_rays_ = 0;
 };
 

@@ -104,7 +104,7 @@ void PvrrStack::bounds_changed(const cad_import::BoundingBox& bounds) {
   });
 }
 
-void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels) {
+void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use) {
   levels_ = levels;
   bodies_.commit();
   left_out_ = 0;
@@ -112,7 +112,7 @@ void PvrrStack::update(const RasterView& camera, const FrameOptions& options, in
   std::vector<Node*> queue;
   for (std::size_t i = 0; i < roots_.size(); ++i) {
     Node& root = *roots_[i];
-    root.optic.update(camera, options);
+    root.optic.update(camera, options, 1, nullptr, use);
     // What an optic shows that the picture does not is of no interest.
     if (box_in_view(camera, bodies_.box(i)).seen)
       queue.push_back(&root);
@@ -164,15 +164,14 @@ bool PvrrStack::may_show(const Node& node, const RasterView& map, std::size_t in
   return box_in_view(map, box).seen && reaches_light(node.optic, box);
 }
 
-void PvrrStack::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone) {
-  for (const auto& root : roots_) draw_map(*root, offset_px, geometry, overlay, seen_alone);
+void PvrrStack::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
+  for (const auto& root : roots_) draw_map(*root, offset_px, geometry, overlay);
 }
 
-bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone) {
+bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
   const glm::dvec2 in_map = node.optic.map_offset(offset_px);
   bool changed = false;
-  for (const auto& child : node.children)
-    changed = draw_map(*child, in_map, geometry, nullptr, false) || changed;
+  for (const auto& child : node.children) changed = draw_map(*child, in_map, geometry, nullptr) || changed;
   if (changed) node.optic.map_changed();
   for (std::size_t patch = 0; patch < node.nested.size(); ++patch)
     node.nested[patch].draw = [&, patch](const RasterView& view, const RasterPass& pass,
@@ -182,7 +181,7 @@ bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overla
           draw_.draw(child->optic, child->index, target, view, in_map,
                      {pass.geometry, true, pass.clip_depth != nullptr});
     };
-  node.drawn = node.optic.draw_map(offset_px, geometry, overlay, node.nested, seen_alone);
+  node.drawn = node.optic.draw_map(offset_px, geometry, overlay, node.nested);
   return node.drawn;
 }
 

@@ -30,12 +30,11 @@ class PvrrStack {
                    const cad_import::BoundingBox& bounds);
 
   /// Rays, views and sizes of all maps, from the top down: which optics a map shows depends on its view.
-  /// No deeper than `levels`.
-  void update(const RasterView& camera, const FrameOptions& options, int levels);
+  /// No deeper than `levels`. `use`: of the maps of the first level.
+  void update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use);
 
   /// All maps that have to be drawn, the deepest first. Overlays go into those of the first level alone.
-  /// `seen_alone`: see PvrrOptic::draw_map; not of maps in maps.
-  void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone = false);
+  void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
   /// Of the first level: optics as the picture shows them.
   [[nodiscard]] std::size_t size() const { return roots_.size(); }
@@ -67,7 +66,7 @@ class PvrrStack {
   void update_children(Node& node, const FrameOptions& options, std::vector<Node*>& next);
   static void set_children(Node& node, std::vector<std::unique_ptr<Node>> children);
   [[nodiscard]] bool may_show(const Node& node, const RasterView& map, std::size_t index) const;
-  bool draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay, bool seen_alone);
+  bool draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay);
   template <typename Visit>
   void visit(const Visit& each);
   void bounds_changed(const cad_import::BoundingBox& bounds);
