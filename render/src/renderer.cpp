@@ -47,15 +47,6 @@ cad_import::BoundingBox bounds_of(const optics::Optic& optic) {
   return box;
 }
 
-FrameCost cost_of(const RenderResult& result, Mode mode, double total_ms) {
-  FrameCost cost{total_ms, 0, -1};
-  if (mode != Mode::exact) return cost;
-  for (const char* pass : {"trace", "pass1", "pass2", "readback"})
-    if (const auto ms = result.stats.time_ms.find(pass); ms != result.stats.time_ms.end())
-      cost.pvrr_ms += ms->second;
-  return cost;
-}
-
 void drop_geometry(Frame& frame) {
   frame.position.clear();
   frame.surface.clear();
@@ -201,8 +192,7 @@ struct Renderer::Impl {
     const auto start = Clock::now();
     RenderResult result = render(mode, camera, options);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    const FrameCost cost = cost_of(result, mode, ms);
-    return {std::move(result), cost};
+    return {std::move(result), FrameCost{ms}};
   }
 
   RenderResult draw_samples(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
