@@ -295,13 +295,14 @@ struct Renderer::Impl {
     bool operator==(const Accumulated&) const = default;
   };
   std::optional<Accumulated> accumulated;
-  Mode accumulated_mode = Mode::pvrr;  ///< which draws it
+  Mode accumulated_mode = Mode::pvrr;            ///< which draws it
+  std::optional<ModeChoice> accumulated_choice;  ///< mode automatic: why
 
   /// What mode automatic takes for a picture of one sample: the samples of a picture all have the same mode.
-  Mode chosen_mode(const Camera& camera, FrameOptions options) {
+  ModeChoice choice_for_samples(const Camera& camera, FrameOptions options) {
     options.samples = 1;
     options.geometry = options.read_back = false;
-    return render_automatically(camera, options).choice->mode;
+    return *render_automatically(camera, options).choice;
   }
 
   void stop_accumulating() {
@@ -324,13 +325,17 @@ RenderResult Renderer::accumulate(Mode mode, const Camera& camera, const FrameOp
   const Impl::Accumulated asked{mode, camera, options};
   if (impl_->accumulated != asked) {
     impl_->stop_accumulating();
-    impl_->accumulated_mode = mode == Mode::automatic ? impl_->chosen_mode(camera, options) : mode;
+    impl_->accumulated_choice.reset();
+    if (mode == Mode::automatic) impl_->accumulated_choice = impl_->choice_for_samples(camera, options);
+    impl_->accumulated_mode = impl_->accumulated_choice ? impl_->accumulated_choice->mode : mode;
     impl_->samples.restart();
     impl_->accumulated = asked;
   }
   const int until = std::min(impl_->samples.count() + std::max(more, 1), options.samples);
   try {
-    return impl_->render_until(impl_->accumulated_mode, camera, options, until);
+    RenderResult result = impl_->render_until(impl_->accumulated_mode, camera, options, until);
+    result.choice = impl_->accumulated_choice;
+    return result;
   } catch (...) {
     impl_->stop_accumulating();
     throw;
