@@ -175,6 +175,7 @@ struct Renderer::Impl {
     const bool verify = choice.mode == Mode::exact && chooser->asks_for_verification();
     FrameOptions drawn = options;
     drawn.geometry = options.geometry || verify;
+    drawn.read_back = options.read_back || verify;
     auto [result, cost] = timed(choice.mode, camera, drawn);
     if (verify) {
       cost.wrong_share = wrong_share(result.frame, render(Mode::pvrr, camera, drawn).frame);

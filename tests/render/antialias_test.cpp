@@ -66,6 +66,20 @@ TEST(Antialias, AutoAccumulatesByOneModeAndSaysWhich) {
   }
 }
 
+/// With pictures left on the GPU pvrr was verified by a picture that was not there: a crash, in the scenes
+/// where pvrr may be the fastest.
+TEST(Antialias, AutoVerifiesPicturesThatAreNotReadBack) {
+  for (const Scene& scene : {small_mirror_scene(), small_lens_scene()}) {
+    FrameOptions options = picture_of(scene, 1, false);
+    options.read_back = false;
+    Renderer renderer(scene);
+    RenderResult result;
+    for (int i = 0; i < 12; ++i) result = renderer.render(Mode::automatic, scene.camera, options);
+    ASSERT_TRUE(result.choice);
+    EXPECT_EQ(result.choice->costs.size(), 4u);
+  }
+}
+
 TEST_P(EveryMode, AccumulatesAnewWhereAnythingChanges) {
   const Scene scene = small_mirror_scene();
   const FrameOptions options = picture_of(scene, 64, false);
