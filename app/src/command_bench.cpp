@@ -22,7 +22,7 @@ constexpr int kBareRepetitions = 5;
 struct BenchOptions {
   DrawingOptions drawing;
   std::vector<std::string> modes{"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"};
-  int frames = 20;
+  int frames = 20, multisample = 1;
   bool json = false;
 };
 
@@ -254,6 +254,7 @@ void add_color_ratios(Session& session, const BenchOptions& options, const std::
 int run_bench(const BenchOptions& options, const CommonOptions& common) {
   const auto modes = modes_with_reference(options);
   Session session(options.drawing, common);
+  session.frame.multisample = options.multisample;
   const auto timings = time_modes(session, options, modes);
 
   const double raytrace_ms = timing_of(timings, "raytrace")->median_ms();
@@ -266,6 +267,7 @@ int run_bench(const BenchOptions& options, const CommonOptions& common) {
                       {"resolution", {session.frame.width, session.frame.height}},
                       {"triangles", triangle_count(session.scene())},
                       {"frames", options.frames},
+                      {"multisample", options.multisample},
                       {"modes", by_mode}};
   add_color_ratios(session, options, timings, report);
   add_ratios(session, timings, options.frames, report);
@@ -290,6 +292,10 @@ Command add_bench_command(CLI::App& root, CommonOptions& common) {
       ->option_text("MODE,...");
   app->add_option("--frames", options->frames, "Frames per mode, after one to warm up (default 20)")
       ->check(CLI::Range(1, 1000000))
+      ->option_text("N");
+  app->add_option("--multisample", options->multisample,
+                  "Hardware multisampling of outlines: 1, 2, 4 or 8; not in mode raytrace")
+      ->check(CLI::IsMember({1, 2, 4, 8}))
       ->option_text("N");
   app->add_flag("--json", options->json, "Print JSON");
   return {app, [options, &common] { return run_bench(*options, common); }};

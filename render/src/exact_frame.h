@@ -28,16 +28,12 @@ class ExactFrame {
                                     const RayTracer& tracer);
 
  private:
-  void start_traced(const FrameOptions& options, std::span<const std::uint32_t> pixels);
-  void take_traced(std::span<const std::uint32_t> pixels, RenderResult& result);
-
   const Scene& scene_;
   RasterScene& raster_;
   PvrrFrame& pvrr_;
   OpticMask mask_;
   MapColors maps_;
-  Frame traced_;  ///< what the rays show: only the pixels of the optics count
-  std::vector<std::int32_t> owner_;
+  std::vector<std::int32_t> owner_;  ///< of the pixels of the optics
 };
 
 }  // namespace catoptra::render

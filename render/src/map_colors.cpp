@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "render/src/pixel_error.h"
 #include "render/src/shading_vector_clones.h"
@@ -48,30 +49,47 @@ struct alignas(64) MapColors::Places {
   float off_x[4][kLanes], off_y[4][kLanes];  ///< of the texels' centres from the place, texels
   float weight[4][kLanes];                   ///< 0 beyond the map's border
   std::uint32_t index[4][kLanes];            ///< from the first texel of the map
-  float depth[4][kLanes];                    ///< as stored
-  std::uint64_t color[4][kLanes];
+  float stored[4][kLanes];                   ///< depth
+  std::uint32_t red_green[4][kLanes], blue[4][kLanes];
   float column[kLanes], row[kLanes];  ///< in texels, centres at halves
   std::int32_t possible[kLanes];
+  std::int32_t any;  ///< not 0: some are possible
+};
+
+/// How far the colour's place is from the point met, along right, up and ahead.
+struct alignas(64) MapColors::Moves {
+  float sum[kLanes];  ///< of the weights of the texels that count
+  float x[kLanes], y[kLanes], z[kLanes];
 };
 
 void MapColors::clear(std::size_t optics) {
   maps_.resize(optics);
   for (auto& maps : maps_) maps.clear();
-  colors_.clear();
-  depths_.clear();
+  texels_ = 0;
+}
+
+void MapColors::reserve(std::size_t texels) {
+  if (texels <= capacity_) return;
+  // Without a first value: every texel is read from the GPU.
+  auto depths = std::make_unique_for_overwrite<float[]>(texels);
+  auto colors = std::make_unique_for_overwrite<std::uint64_t[]>(texels);
+  std::copy_n(depths_.get(), texels_, depths.get());
+  std::copy_n(colors_.get(), texels_, colors.get());
+  depths_ = std::move(depths);
+  colors_ = std::move(colors);
+  capacity_ = texels;
 }
 
 void MapColors::add(std::size_t optic, std::span<const RasterView> views, const RasterTarget& target) {
-  const std::size_t first = depths_.size(),
-                    count = std::size_t(target.size().x) * std::size_t(target.size().y);
+  const std::size_t first = texels_, count = std::size_t(target.size().x) * std::size_t(target.size().y);
   for (const RasterView& view : views) {
     Map map = map_of(view);
     map.stride = target.size().x;
     map.first = first + std::size_t(view.corner.y) * std::size_t(map.stride) + std::size_t(view.corner.x);
     maps_[optic].push_back(map);
   }
-  depths_.resize(first + count);
-  colors_.resize(first + count);
+  reserve(first + count);
+  texels_ = first + count;
   glGetTextureImage(target.depth().id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
                     static_cast<GLsizei>(count * sizeof(float)), &depths_[first]);
   glGetTextureImage(target.color().id(), 0, GL_RGBA, GL_HALF_FLOAT,
@@ -103,10 +121,11 @@ MapColors::Map MapColors::map_of(const RasterView& view) {
 }
 
 /// Of a stored depth; kOtherRegion where what is stored belongs to the other view of the same map.
-float MapColors::clip_depth(const Map& map, float stored) {
+[[gnu::always_inline]] inline float MapColors::clip_depth(const Map& map, float stored) {
   const float depth = (stored - map.depth_of_far) / (map.depth_of_near - map.depth_of_far);
-  // The depth that both views may store is the far end of neither.
-  const bool own = depth >= 0 && (map.sense < 0 ? depth < 1 : depth <= 1);
+  // The depth that both views may store is the far end of neither. A stored depth of 1, the zooming view's
+  // far end, is where nothing was drawn.
+  const int own = (map.sense < 0 ? int(depth > 0) : int(depth >= 0)) & int(depth < 1);
   return own ? depth : kOtherRegion;
 }
 
@@ -114,26 +133,26 @@ void MapColors::find(std::size_t optic, MapQueries& queries, MapAnswers& answers
   for (const Map& map : maps_[optic]) {
     Places p;
     find_places(map, queries, p);
-    for (int k = 0; k < 4; ++k)
-      for (int i = 0; i < kLanes; ++i) {
-        p.depth[k][i] = clip_depth(map, depths_[map.first + p.index[k][i]]);
-        p.color[k][i] = colors_[map.first + p.index[k][i]];
-      }
-    MapAnswers of_map;
-    judge(map, queries, p, of_map);
-    mix(p, of_map);
-    for (int i = 0; i < kLanes; ++i) {
-      if (!of_map.found[i]) continue;
-      queries.wanted[i] = 0;
-      answers.found[i] = 1;
-      answers.red[i] = of_map.red[i];
-      answers.green[i] = of_map.green[i];
-      answers.blue[i] = of_map.blue[i];
-      answers.shown_x[i] = of_map.shown_x[i];
-      answers.shown_y[i] = of_map.shown_y[i];
-      answers.shown_z[i] = of_map.shown_z[i];
-    }
+    if (!p.any) continue;
+    fetch(map, p);
+    Moves moves;
+    judge(map, queries, p, moves);
+    answer(map, p, moves, queries, answers);
   }
+}
+
+/// The texels themselves. (Lanes that ask for nothing fetch the map's corner.)
+void MapColors::fetch(const Map& map, Places& p) const {
+  const float* const depths = &depths_[map.first];
+  const std::uint64_t* const colors = &colors_[map.first];
+  for (int k = 0; k < 4; ++k)
+    for (int i = 0; i < kLanes; ++i) {
+      const std::uint32_t at = p.index[k][i];
+      const std::uint64_t color = colors[at];
+      p.stored[k][i] = depths[at];
+      p.red_green[k][i] = std::uint32_t(color);
+      p.blue[k][i] = std::uint32_t(color >> 32);
+    }
 }
 
 template <bool kPerspective>
@@ -176,6 +195,9 @@ template <bool kPerspective>
     p.column[i] = possible ? column : 0.0f;
     p.row[i] = possible ? row : 0.0f;
   }
+  std::int32_t any = 0;
+  for (int i = 0; i < kLanes; ++i) any |= p.possible[i];
+  p.any = any;
   const int last_x = m.size.x - 1, last_y = m.size.y - 1, stride = m.stride;
   for (int k = 0; k < 4; ++k) {
     const int right = k % 2, down = k / 2;
@@ -199,18 +221,19 @@ CATOPTRA_VECTOR_CLONES void MapColors::find_places(const Map& map, const MapQuer
     find_places_in<false>(map, q, p);
 }
 
-/// Leaves weights to the texels that show what the ray meets. The colour is their mean, so its place is the
-/// mean of theirs.
+/// Leaves weights, of sum 1, to the texels that show what the ray meets. The colour is their mean, so its
+/// place is the mean of theirs.
 template <bool kPerspective>
 [[gnu::always_inline]] inline void MapColors::judge_in(const Map& map, const MapQueries& q, Places& p,
-                                                       MapAnswers& answers) {
+                                                       Moves& moves) {
   const Map m = map;
   const float per_x = 1 / m.scale_x, per_y = 1 / m.scale_y;
-  alignas(64) float sum[kLanes] = {}, moved_x[kLanes] = {}, moved_y[kLanes] = {}, moved_z[kLanes] = {};
+  Moves mean{};
   for (int k = 0; k < 4; ++k)
     for (int i = 0; i < kLanes; ++i) {
-      const bool sky = q.sky[i] != 0;
-      const float shifted = p.depth[k][i] - m.depth_shift, x = p.x[i], y = p.y[i], z = p.z[i];
+      const int sky = q.sky[i];
+      const float stored = clip_depth(m, p.stored[k][i]);
+      const float shifted = stored - m.depth_shift, x = p.x[i], y = p.y[i], z = p.z[i];
       const float met = kPerspective ? m.depth_factor / shifted : m.depth_factor * shifted;
       const float depth = sky ? z : met, lateral = kPerspective ? depth : 1.0f;
       const float sx = lateral * (p.at_x[i] + p.off_x[k][i] * per_x),
@@ -219,69 +242,88 @@ template <bool kPerspective>
       const float size = larger(larger(std::abs(q.point_x[i]), std::abs(q.point_y[i])),
                                 larger(std::abs(q.point_z[i]), std::abs(z)));
       const float allowed = kTolerance_rad * q.distance[i] + kRounding * size;
-      const int nothing = p.depth[k][i] == 0, in_plane = out <= allowed;
-      const int same = sky ? nothing : (1 - nothing) & in_plane;
+      const int nothing = stored == 0, in_plane = out <= allowed;
+      const int same = (sky & nothing) | ((1 - sky) & (1 - nothing) & in_plane);
       const float before = p.weight[k][i], weight = same ? before : 0.0f;
       // Numbers that mean nothing times 0 need not be 0.
       const float by_x = same ? sx - x : 0.0f, by_y = same ? sy - y : 0.0f, by_z = same ? depth - z : 0.0f;
       p.weight[k][i] = weight;
-      sum[i] += weight;
-      moved_x[i] += weight * by_x;
-      moved_y[i] += weight * by_y;
-      moved_z[i] += weight * by_z;
+      mean.sum[i] += weight;
+      mean.x[i] += weight * by_x;
+      mean.y[i] += weight * by_y;
+      mean.z[i] += weight * by_z;
     }
-  alignas(64) float per_sums[kLanes];
-  for (int i = 0; i < kLanes; ++i) per_sums[i] = 1 / larger(sum[i], kLeastWeight);
-  for (int k = 0; k < 4; ++k)
-    for (int i = 0; i < kLanes; ++i) p.weight[k][i] *= per_sums[i];
   for (int i = 0; i < kLanes; ++i) {
-    const bool sky = q.sky[i] != 0;
-    const float per_sum = per_sums[i];
-    const float mx = moved_x[i] * per_sum, my = moved_y[i] * per_sum, mz = moved_z[i] * per_sum;
-    const float dx = q.direction_x[i], dy = q.direction_y[i], dz = q.direction_z[i];
+    const float per_sum = 1 / larger(mean.sum[i], kLeastWeight);
+    for (int k = 0; k < 4; ++k) p.weight[k][i] *= per_sum;
+    mean.x[i] *= per_sum;
+    mean.y[i] *= per_sum;
+    mean.z[i] *= per_sum;
+  }
+  moves = mean;
+}
+
+CATOPTRA_VECTOR_CLONES void MapColors::judge(const Map& map, const MapQueries& q, Places& p, Moves& moves) {
+  if (map.perspective)
+    judge_in<true>(map, q, p, moves);
+  else
+    judge_in<false>(map, q, p, moves);
+}
+
+/// Answers the lanes whose colour lies near enough to the point met.
+CATOPTRA_VECTOR_CLONES void MapColors::answer(const Map& map, const Places& p, const Moves& moves,
+                                              MapQueries& queries, MapAnswers& answers) {
+  const Map m = map;
+  const float per_x = std::abs(1 / m.scale_x), per_y = std::abs(1 / m.scale_y);
+  const float perspective = m.perspective ? 1 : 0;
+  MapAnswers a;
+  for (int i = 0; i < kLanes; ++i) {
+    const auto sky = float(queries.sky[i]);
+    const float mx = moves.x[i], my = moves.y[i], mz = moves.z[i];
+    const float dx = queries.direction_x[i], dy = queries.direction_y[i], dz = queries.direction_z[i];
     const float d_right = dx * m.right.x + dy * m.right.y + dz * m.right.z,
                 d_up = dx * m.up.x + dy * m.up.y + dz * m.up.z,
                 d_ahead = dx * m.ahead.x + dy * m.ahead.y + dz * m.ahead.z;
     const float along = mx * d_right + my * d_up + mz * d_ahead;
     const float ax = mx - along * d_right, ay = my - along * d_up, az = mz - along * d_ahead;
     const float across2 = ax * ax + ay * ay + az * az;
-    const float angle = kTolerance_rad * q.distance[i], limit = larger(angle, q.half_pixel[i]);
-    // A texel's sides, across the ray.
-    const float side_x = std::abs(per_x) * std::sqrt(larger(0.0f, 1 - d_right * d_right)),
-                side_y = std::abs(per_y) * std::sqrt(larger(0.0f, 1 - d_up * d_up));
-    const float texel = (kPerspective ? p.z[i] : 1.0f) * larger(side_x, side_y);
-    answers.found[i] = p.possible[i] & int(sum[i] >= kLeastWeight) & int(across2 <= limit * limit) &
-                       int(texel <= kCoarsest * larger(angle, kPixelsPerHalf * q.half_pixel[i]));
-    const float sx = q.point_x[i] + mx * m.right.x + my * m.up.x + mz * m.ahead.x,
-                sy = q.point_y[i] + mx * m.right.y + my * m.up.y + mz * m.ahead.y,
-                sz = q.point_z[i] + mx * m.right.z + my * m.up.z + mz * m.ahead.z;
-    const float scale = sky ? 1 / std::sqrt(sx * sx + sy * sy + sz * sz) : 1.0f;
-    answers.shown_x[i] = scale * sx;
-    answers.shown_y[i] = scale * sy;
-    answers.shown_z[i] = scale * sz;
-  }
-}
-
-CATOPTRA_VECTOR_CLONES void MapColors::judge(const Map& map, const MapQueries& q, Places& p,
-                                             MapAnswers& answers) {
-  if (map.perspective)
-    judge_in<true>(map, q, p, answers);
-  else
-    judge_in<false>(map, q, p, answers);
-}
-
-CATOPTRA_VECTOR_CLONES void MapColors::mix(const Places& p, MapAnswers& answers) {
-  for (int i = 0; i < kLanes; ++i) {
+    const float half = queries.half_pixel[i];
+    const float angle = kTolerance_rad * queries.distance[i], limit = larger(angle, half);
+    // A texel's sides, across the ray. (The amounts, for what rounding leaves below 0; like all that follows
+    // without a choice, which would not become vector code.)
+    const float side_x = per_x * std::sqrt(std::abs(1 - d_right * d_right)),
+                side_y = per_y * std::sqrt(std::abs(1 - d_up * d_up));
+    const float depth = perspective * p.z[i] + (1 - perspective), texel = depth * larger(side_x, side_y);
+    const int found = p.possible[i] & int(moves.sum[i] >= kLeastWeight) & int(across2 <= limit * limit) &
+                      int(texel <= kCoarsest * larger(angle, kPixelsPerHalf * half));
+    const float sx = queries.point_x[i] + mx * m.right.x + my * m.up.x + mz * m.ahead.x,
+                sy = queries.point_y[i] + mx * m.right.y + my * m.up.y + mz * m.ahead.y,
+                sz = queries.point_z[i] + mx * m.right.z + my * m.up.z + mz * m.ahead.z;
+    const float squared = sx * sx + sy * sy + sz * sz, scale = 1 / std::sqrt(sky * squared + (1 - sky));
     float red = 0, green = 0, blue = 0;
     for (int k = 0; k < 4; ++k) {
-      const auto low = std::uint32_t(p.color[k][i]), high = std::uint32_t(p.color[k][i] >> 32);
-      red += p.weight[k][i] * from_half(low);
-      green += p.weight[k][i] * from_half(low >> 16);
-      blue += p.weight[k][i] * from_half(high);
+      red += p.weight[k][i] * from_half(p.red_green[k][i]);
+      green += p.weight[k][i] * from_half(p.red_green[k][i] >> 16);
+      blue += p.weight[k][i] * from_half(p.blue[k][i]);
     }
-    answers.red[i] = red;
-    answers.green[i] = green;
-    answers.blue[i] = blue;
+    a.found[i] = found;
+    a.red[i] = red;
+    a.green[i] = green;
+    a.blue[i] = blue;
+    a.shown_x[i] = scale * sx;
+    a.shown_y[i] = scale * sy;
+    a.shown_z[i] = scale * sz;
+  }
+  for (int i = 0; i < kLanes; ++i) {
+    const int found = a.found[i];
+    queries.wanted[i] &= 1 - found;
+    answers.found[i] |= found;
+    answers.red[i] = found ? a.red[i] : answers.red[i];
+    answers.green[i] = found ? a.green[i] : answers.green[i];
+    answers.blue[i] = found ? a.blue[i] : answers.blue[i];
+    answers.shown_x[i] = found ? a.shown_x[i] : answers.shown_x[i];
+    answers.shown_y[i] = found ? a.shown_y[i] : answers.shown_y[i];
+    answers.shown_z[i] = found ? a.shown_z[i] : answers.shown_z[i];
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -63,20 +64,25 @@ class MapColors {
     std::size_t first;  ///< index of its first texel
   };
   struct Places;
+  struct Moves;
 
   [[nodiscard]] static Map map_of(const RasterView& view);
   [[nodiscard]] static float clip_depth(const Map& map, float stored);
   static void find_places(const Map& map, const MapQueries& q, Places& p);
   template <bool kPerspective>
   static void find_places_in(const Map& map, const MapQueries& q, Places& p);
-  static void judge(const Map& map, const MapQueries& q, Places& p, MapAnswers& answers);
+  static void judge(const Map& map, const MapQueries& q, Places& p, Moves& moves);
   template <bool kPerspective>
-  static void judge_in(const Map& map, const MapQueries& q, Places& p, MapAnswers& answers);
-  static void mix(const Places& p, MapAnswers& answers);
+  static void judge_in(const Map& map, const MapQueries& q, Places& p, Moves& moves);
+  static void answer(const Map& map, const Places& p, const Moves& moves, MapQueries& queries,
+                     MapAnswers& answers);
+  void fetch(const Map& map, Places& p) const;
+  void reserve(std::size_t texels);
 
   std::vector<std::vector<Map>> maps_;  ///< by optic
-  std::vector<std::uint64_t> colors_;   ///< RGBA, half precision, red in the lowest bits
-  std::vector<float> depths_;           ///< reversed; 0: the sky
+  std::size_t texels_ = 0, capacity_ = 0;
+  std::unique_ptr<std::uint64_t[]> colors_;  ///< RGBA, half precision, red in the lowest bits
+  std::unique_ptr<float[]> depths_;          ///< reversed; 0: the sky
 };
 
 }  // namespace catoptra::render

@@ -8,15 +8,15 @@
 namespace catoptra::render {
 namespace {
 
-// Sides of the small pictures, as parts of the whole's. The first is drawn twice: programs are compiled and
-// memory is touched the first time.
-constexpr std::array<int, 3> kTrialParts{8, 8, 4};
+// Sides of the small pictures, as parts of the whole's. Each is drawn twice, and the faster counts: programs
+// are compiled and the memory of a size is touched the first time.
+constexpr std::array<int, 4> kTrialParts{8, 8, 4, 4};
 constexpr glm::ivec2 kSmallestTrial{32, 18};
 
 // A mode is tried in a whole frame while it may be the fastest: predictions from small pictures are off by
-// about so much, and what keeps its map while all is at rest is faster then by up to so much (measured:
-// docs/decisions/0014).
-constexpr double kDoubt = 1.3;
+// about so much, the first whole frame costs up to so much more than the others, and what keeps its map while
+// all is at rest is faster then by up to so much (measured: docs/decisions/0014).
+constexpr double kDoubt = 1.8, kFirstFrame = 1.6;
 constexpr double kRestGainPvrr = 4, kRestGainExact = 2;
 
 // The costs of all modes are found out again when the mode in use has changed its own by so much.
@@ -39,7 +39,8 @@ double rest_gain(Mode mode) {
 }  // namespace
 
 double ModeChooser::Estimate::predicted_ms(double sample_count) const {
-  const glm::dvec2 &small = trials[kTrialParts.size() - 2], &large = trials.back();
+  const glm::dvec2 small(trials[0].x, std::min(trials[0].y, trials[1].y)),
+      large(trials[2].x, std::min(trials[2].y, trials[3].y));
   // Disturbances must not turn the line upside down.
   const double per_sample =
       large.x > small.x ? std::max(0.0, (large.y - small.y) / (large.x - small.x)) : large.y / large.x;
@@ -47,15 +48,26 @@ double ModeChooser::Estimate::predicted_ms(double sample_count) const {
 }
 
 double ModeChooser::Estimate::expected_ms(const FrameKind& kind) const {
-  if (is_measured(kind)) return measured_ms[kind.at_rest];
+  if (measured_ms[kind.at_rest] >= 0) return measured_ms[kind.at_rest];
   if (measured_ms[0] >= 0) return measured_ms[0];
   return predicted_ms(kind.sample_count());
 }
 
 double ModeChooser::Estimate::hoped_ms(const FrameKind& kind) const {
   if (is_measured(kind)) return measured_ms[kind.at_rest];
+  if (measured_ms[kind.at_rest] >= 0) return measured_ms[kind.at_rest] / kFirstFrame;
   const double doubt = measured_ms[0] >= 0 ? 1 : kDoubt;
   return expected_ms(kind) / (kind.at_rest ? std::max(doubt, rest_gain(mode)) : doubt);
+}
+
+void ModeChooser::Estimate::add_frame(const FrameKind& kind, const FrameCost& cost) {
+  double& ms = measured_ms[kind.at_rest];
+  int& count = frames[kind.at_rest];
+  if (ms < 0)
+    ms = cost.total_ms;
+  else
+    ms = count < 2 ? std::min(ms, cost.total_ms) : 0.5 * (ms + cost.total_ms);
+  if (cost.wrong_share < 0 || count > 0) ++count;
 }
 
 ModeChooser::ModeChooser(double max_error_px, bool has_optics, bool can_raster)
@@ -70,6 +82,7 @@ void ModeChooser::forget() {
   wrong_share_ = -1;
   moved_frames_ = strange_frames_ = 0;
   usual_ms_ = {-1, -1};
+  usual_frames_ = {0, 0};
 }
 
 ModeChooser::Estimate* ModeChooser::estimate_of(Mode mode) {
@@ -83,8 +96,7 @@ std::optional<ModeTrial> ModeChooser::next_trial(const FrameKind& kind) {
   known_for_ = kind;
   if (estimates_.size() == 1) return std::nullopt;
   for (const Estimate& e : estimates_) {
-    // What pvrr costs is a part of what mode exact costs.
-    if (e.mode == Mode::pvrr || e.trials.size() == kTrialParts.size()) continue;
+    if (e.trials.size() == kTrialParts.size()) continue;
     return ModeTrial{e.mode, glm::max(kind.size / kTrialParts[e.trials.size()], kSmallestTrial)};
   }
   return std::nullopt;
@@ -93,7 +105,6 @@ std::optional<ModeTrial> ModeChooser::next_trial(const FrameKind& kind) {
 void ModeChooser::trial_drawn(const ModeTrial& trial, const FrameCost& cost) {
   const double samples = double(trial.size.x) * trial.size.y;
   estimate_of(trial.mode)->trials.emplace_back(samples, cost.total_ms);
-  if (trial.mode == Mode::exact) estimate_of(Mode::pvrr)->trials.emplace_back(samples, cost.pvrr_ms);
 }
 
 bool ModeChooser::meets_error(Mode mode) const {
@@ -154,7 +165,7 @@ void ModeChooser::frame_drawn(Mode mode, const FrameKind& kind, const FrameCost&
     ++moved_frames_;
   }
   // A frame out of all custom tells nothing of the mode; some of them in a row, that all modes have changed.
-  if (is_strange(mode, kind, cost.total_ms)) {
+  if (cost.wrong_share < 0 && is_strange(mode, kind, cost.total_ms)) {
     if (++strange_frames_ < kStrangeFrames) return;
     const double wrong_share = wrong_share_;
     forget();
@@ -162,16 +173,18 @@ void ModeChooser::frame_drawn(Mode mode, const FrameKind& kind, const FrameCost&
     return;
   }
   strange_frames_ = 0;
-  double& ms = estimate_of(mode)->measured_ms[kind.at_rest];
-  ms = ms < 0 ? cost.total_ms : 0.5 * (ms + cost.total_ms);
+  estimate_of(mode)->add_frame(kind, cost);
 }
 
 bool ModeChooser::is_strange(Mode mode, const FrameKind& kind, double total_ms) {
   double& usual = usual_ms_[kind.at_rest];
   Mode& usual_mode = usual_mode_[kind.at_rest];
-  if (usual < 0 || usual_mode != mode) {
-    usual = total_ms;
+  int& frames = usual_frames_[kind.at_rest];
+  if (usual < 0 || usual_mode != mode) frames = 0;
+  if (frames < 2) {
+    usual = frames == 0 ? total_ms : std::min(usual, total_ms);
     usual_mode = mode;
+    ++frames;
     return false;
   }
   return total_ms > kChanged * usual || kChanged * total_ms < usual;

@@ -24,9 +24,9 @@ struct FrameKind {
 /// What is known of a frame that was drawn.
 struct FrameCost {
   double total_ms = 0;
-  double pvrr_ms = 0;  ///< mode exact: the share of its pvrr picture
-  double wrong_share =
-      -1;  ///< mode exact: of the optics' pixels, those that pvrr shows wrong; < 0: not verified
+  /// Mode exact: of the optics' pixels, those that pvrr shows wrong; < 0: not verified. A picture that was
+  /// verified costs more than others.
+  double wrong_share = -1;
 };
 
 /// A small picture that is to be drawn for its cost.
@@ -68,10 +68,12 @@ class ModeChooser {
   /// The cost of one mode: what frames took, or a + b * samples from its trials.
   struct Estimate {
     Mode mode;
-    std::vector<glm::dvec2> trials;             ///< samples, ms; the first only warms up
+    std::vector<glm::dvec2> trials;             ///< samples, ms
     std::array<double, 2> measured_ms{-1, -1};  ///< of the last frames: moving, at rest; < 0: none yet
+    std::array<int, 2> frames{0, 0};            ///< so many; the first touches memory and compiles
+    void add_frame(const FrameKind& kind, const FrameCost& cost);
     [[nodiscard]] double predicted_ms(double sample_count) const;
-    [[nodiscard]] bool is_measured(const FrameKind& kind) const { return measured_ms[kind.at_rest] >= 0; }
+    [[nodiscard]] bool is_measured(const FrameKind& kind) const { return frames[kind.at_rest] >= 2; }
     [[nodiscard]] double expected_ms(const FrameKind& kind) const;
     [[nodiscard]] double hoped_ms(const FrameKind& kind) const;
   };
@@ -90,7 +92,8 @@ class ModeChooser {
   double wrong_share_ = -1;  ///< of pvrr, last time it was verified; < 0: never
   int moved_frames_ = 0;     ///< since then
   int strange_frames_ = 0;   ///< in a row, that cost far more or less than when the mode was chosen
-  std::array<double, 2> usual_ms_{-1, -1};  ///< of the mode drawn last, when it was drawn first
+  std::array<double, 2> usual_ms_{-1, -1};  ///< of the mode drawn last: its first frames
+  std::array<int, 2> usual_frames_{0, 0};
   std::array<Mode, 2> usual_mode_{Mode::automatic, Mode::automatic};
 };
 

@@ -60,8 +60,21 @@ void OpticMask::begin(glm::ivec2 size, const GlTexture* depth, int multisample) 
     if (*framebuffer) glClearNamedFramebufferfv(framebuffer->id(), GL_COLOR, 0, &nothing.x);
 }
 
-void OpticMask::draw(const RasterView& view) {
+void OpticMask::hide(const RasterView& view) const {
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw_surfaces(view);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void OpticMask::draw(const RasterView& view) const {
   glBindFramebuffer(GL_FRAMEBUFFER, multisample_ > 1 ? smooth_framebuffer_.id() : framebuffer_.id());
+  // Where the same program has left their own depth, that is not nearer.
+  glDepthFunc(GL_GEQUAL);
+  draw_surfaces(view);
+  glDepthFunc(GL_GREATER);
+}
+
+void OpticMask::draw_surfaces(const RasterView& view) const {
   glUseProgram(program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
@@ -105,7 +118,9 @@ void draw_around_optics(RasterScene& raster, OpticMask& mask, RasterPicture& pic
     RasterPass pass;
     pass.geometry = geometry;
     target->bind(geometry);
-    raster.draw(view, pass);
+    raster.clear(view, pass);
+    mask.hide(view);
+    raster.draw_all(view, pass);
     mask.begin(size, &target->depth(), target->multisample());
     mask.draw(view);
   }

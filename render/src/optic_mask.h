@@ -26,8 +26,11 @@ class OpticMask {
   /// Starts an empty mask. `depth`: a depth buffer of that size and `multisample` places in each pixel,
   /// before which optics count; null: all do, hidden or not.
   void begin(glm::ivec2 size, const GlTexture* depth, int multisample = 1);
-  /// Adds the optics as seen in `view`, which must be the one that RasterScene has begun last.
-  void draw(const RasterView& view);
+  /// Draws the depth of the optics into the bound target, so that what they hide is not shaded. `view` must
+  /// be the one that RasterScene has begun last.
+  void hide(const RasterView& view) const;
+  /// Adds the optics as seen in `view`, likewise: those that nothing is nearer than.
+  void draw(const RasterView& view) const;
   /// Per pixel kOpticPixel where some draw shows an optic in it and in all pixels beside it, kOpticEdge where
   /// in it or in one beside it, else 0: rasteriser and ray tracer round differently, so that on the outline
   /// one may see the optic where the other does not. The ray tracer knows what to do with both.
@@ -38,6 +41,7 @@ class OpticMask {
 
  private:
   [[nodiscard]] std::vector<std::uint8_t> read() const;
+  void draw_surfaces(const RasterView& view) const;
 
   const Scene& scene_;
   const RasterScene& raster_;

@@ -44,8 +44,8 @@ void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placemen
   stack_.place_optic(index, placement, bounds);
 }
 
-void PvrrFrame::update(const Camera& camera, const FrameOptions& options, int levels) {
-  stack_.update(camera_view(camera, {options.width, options.height}), options, levels);
+void PvrrFrame::update(const Camera& camera, const FrameOptions& options, int levels, MapUse use) {
+  stack_.update(camera_view(camera, {options.width, options.height}), options, levels, use);
 }
 
 void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
@@ -68,7 +68,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   const double total_ms = gl_time_ms([&] {
     trace_ms = gl_time_ms([&] {
       picture.begin(options);
-      update(camera, options, scene_.settings.depth);
+      update(camera, options, scene_.settings.depth, MapUse::picture);
       set_overlay(options);
     });
     const glm::dvec2 offset = camera.offset_px;

@@ -34,7 +34,7 @@ class PvrrFrame {
   /// For mode exact, the parts of render(): vertex rays, viewpoints and sizes of the maps, with optics in
   /// optics down to `levels`; the maps of a sample, of which those of the optics in the picture are then
   /// copied into `maps`; and what they have cost.
-  void update(const Camera& camera, const FrameOptions& options, int levels);
+  void update(const Camera& camera, const FrameOptions& options, int levels, MapUse use);
   void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
   void copy_maps(MapColors& maps) const;
   [[nodiscard]] FrameStats statistics() const;

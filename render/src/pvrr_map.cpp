@@ -1,6 +1,7 @@
 #include "render/src/pvrr_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace catoptra::render {
@@ -75,7 +76,8 @@ void PvrrMap::bind_optic_depth() const {
 
 void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
                    const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px,
-                   bool geometry, Overlay* overlay, const NestedOptics* nested) {
+                   bool geometry, Overlay* overlay, const NestedOptics* nested,
+                   std::span<const TexelRect> unseen) {
   const AtlasPlace& place = layout_.places[patch];
   const glm::ivec2 size = place.texels + 2 * place.guard;
   const optics::VirtualView guarded = with_guard(view, place.texels, place.guard);
@@ -100,7 +102,8 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
                         view.beyond_viewpoint,
                         kBeside * view.zooming_far_mm,
                         overlay,
-                        nested && !nested->optics.empty() ? nested : nullptr};
+                        nested && !nested->optics.empty() ? nested : nullptr,
+                        unseen};
   // What is cleared, and resolved, is the patch's part alone.
   glEnable(GL_SCISSOR_TEST);
   glScissor(place.corner.x, place.corner.y, size.x, size.y);
@@ -119,8 +122,21 @@ void PvrrMap::draw(RasterScene& scene, std::size_t optic, const RasterOptic& sur
   glDisable(GL_SCISSOR_TEST);
 }
 
+/// Nothing is nearer than depth 1.
+void PvrrMap::block(std::span<const TexelRect> unseen) {
+  if (unseen.empty()) return;
+  std::array<GLint, 4> scissor{};
+  glGetIntegerv(GL_SCISSOR_BOX, scissor.data());
+  const float nearest = 1;
+  for (const TexelRect& rect : unseen) {
+    glScissor(rect.corner.x, rect.corner.y, rect.size.x, rect.size.y);
+    glClearBufferfv(GL_DEPTH, 0, &nearest);
+  }
+  glScissor(scissor[0], scissor[1], scissor[2], scissor[3]);
+}
+
 void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const {
-  const auto& [scene, surface, views, beyond_viewpoint, beside_mm, overlay, nested] = regions;
+  const auto& [scene, surface, views, beyond_viewpoint, beside_mm, overlay, nested, unseen] = regions;
   if (!beyond_viewpoint) {
     bind_optic_depth();
     scene.draw_optic_depth(views.view, surface);
@@ -131,6 +147,7 @@ void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const Raster
   }
   target.bind(pass.geometry);
   scene.clear(views.view, pass);
+  block(unseen);
   if (nested) {
     pass.nested = nested->optics;
     nested->draw(views.view, pass, target);

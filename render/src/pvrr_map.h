@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "optics/virtual_view.h"
+#include "render/src/map_coverage.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/pvrr_atlas.h"
 #include "render/src/raster_scene.h"
@@ -68,10 +69,11 @@ class PvrrMap {
   /// by its depth; so is, beside the optic, the last tenth of the way back to it: there stands its own frame,
   /// which rays that leave near its border do not meet.
   /// `patch`: its place in the layout; `offset_px`: place of the samples within a texel; `nested`: may be
-  /// null; in a zooming region these optics too are plain bodies.
+  /// null; in a zooming region these optics too are plain bodies. `unseen`: parts of the target in which
+  /// nothing is drawn; their depth becomes 1, which nothing else has.
   void draw(RasterScene& scene, std::size_t optic, const RasterOptic& surface, std::size_t patch,
             const optics::VirtualView& view, double texels_per_pixel, glm::dvec2 offset_px, bool geometry,
-            Overlay* overlay, const NestedOptics* nested = nullptr);
+            Overlay* overlay, const NestedOptics* nested = nullptr, std::span<const TexelRect> unseen = {});
 
   /// The views of the last draw() of each patch, in its place of the target, and those of zooming regions in
   /// which anything may be seen. Depths of both are in the target, see zooming_view().
@@ -95,7 +97,9 @@ class PvrrMap {
     double beside_mm;
     Overlay* overlay;
     const NestedOptics* nested;  ///< or null
+    std::span<const TexelRect> unseen;
   };
+  static void block(std::span<const TexelRect> unseen);
   void draw_regions(const Regions& regions, RasterPass pass, const RasterTarget& target) const;
 
   AtlasLayout layout_;

@@ -90,7 +90,7 @@ void PvrrOptic::place(const optics::Placement& placement) {
 }
 
 void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, double texels_before,
-                       const PvrrOptic* above) {
+                       const PvrrOptic* above, MapUse use) {
   above_ = above;
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   multisample_ = options.multisample;
@@ -104,7 +104,8 @@ void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, do
   const bool stays = hits_hold_;
   if (!stays) find_hits();
   const bool same_texels = std::exchange(texels_before_, texels_before) == texels_before;
-  if (!stays || !same_texels || !fitted_for_ || !same_view(*fitted_for_, view))
+  const bool same_use = std::exchange(use_, use) == use;
+  if (!stays || !same_texels || !same_use || !fitted_for_ || !same_view(*fitted_for_, view))
     fit(view, !stays, options.reuse_static);
   map_.resize(layout_, options.geometry);
 }
@@ -215,7 +216,7 @@ void PvrrOptic::fit(const RasterView& camera, bool hits_anew, bool remember) {
                          ? plane_view(optic_, camera, fitted_[0], optics::in_own_frame(bounds_, placement_))
                          : std::optional<PlaneView>();
   on_pixel_grid_ = plane.has_value();
-  const bool refines = scene_.settings.max_error_px > 0 && !plane;
+  const bool refines = scene_.settings.max_error_px > 0 && !plane && use_ == MapUse::picture;
   if (cut_anew || plane || was_on_grid || refines) {
     views_ = plane ? std::vector{plane->view} : fitted_;
     if (cut_anew || plane || was_on_grid) set_coordinates();
@@ -294,7 +295,7 @@ bool PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
                          std::span<const NestedOptics> nested) {
   if (!faces_eye_) return false;
   const glm::dvec2 offset = map_offset(offset_px);
-  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_};
+  const Drawn wanted{offset, geometry, overlay ? 1 : multisample_, use_};
   if (!overlay && drawn_ == wanted) return false;
   const RasterOptic& last = optic_.kind == OpticKind::mirror
                                 ? raster_.optic(index_)
@@ -303,10 +304,16 @@ bool PvrrOptic::draw_map(glm::dvec2 offset_px, bool geometry, Overlay* overlay,
   for (std::size_t patch = 0; patch < views_.size(); ++patch)
     map_.draw(raster_, index_, last, patch, placed(views_[patch], placement_),
               map_sizes_[patch].texels_per_pixel, offset, geometry, overlay,
-              patch < nested.size() ? &nested[patch] : nullptr);
+              patch < nested.size() ? &nested[patch] : nullptr, unseen_in(patch));
   drawn_ = wanted;
   if (overlay) drawn_.reset();
   return true;
+}
+
+std::vector<TexelRect> PvrrOptic::unseen_in(std::size_t patch) const {
+  if (use_ == MapUse::picture) return {};
+  return unseen_parts(seen_mesh(), coordinates_, patches_of_seen(), std::uint32_t(patch),
+                      layout_.places[patch]);
 }
 
 RasterView PvrrOptic::map_camera(std::size_t patch) const {

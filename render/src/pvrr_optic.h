@@ -34,6 +34,11 @@ struct OpticPlace {
   bool nested = false;                  ///< seen in another one's map: it is one patch then
 };
 
+/// What the maps are for. In a picture the optic's mesh shows them, with all that patches and refinement of
+/// the mesh are for. Exact rays find in a map what they meet wherever it shows that: patches are cut where a
+/// map would be too wide alone, and what no ray can ask for is not drawn (see unseen_parts()).
+enum class MapUse { picture, exact_rays };
+
 class PvrrOptic {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
@@ -56,7 +61,7 @@ class PvrrOptic {
   /// picture. `above`: the optic in whose map the camera sees this one, by way of which light comes here;
   /// null: none. It must outlive this, and its own update() must have been called.
   void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1,
-              const PvrrOptic* above = nullptr);
+              const PvrrOptic* above = nullptr, MapUse use = MapUse::picture);
 
   /// How light comes from the eye through this optic to a point beyond it, both in the world; nullopt where
   /// it does not.
@@ -120,6 +125,7 @@ class PvrrOptic {
   void refine(const RasterView& camera, bool remember);
   void refine_lens(bool remember);
   void show();
+  [[nodiscard]] std::vector<TexelRect> unseen_in(std::size_t patch) const;
   [[nodiscard]] std::vector<std::vector<glm::dvec3>> lens_coordinates() const;
   void set_layout(std::vector<PvrrMapSize> sizes);
   [[nodiscard]] bool in_patches() const { return !patches_.ranges.empty(); }
@@ -186,11 +192,13 @@ class PvrrOptic {
     glm::dvec2 offset_px;
     bool geometry;
     int multisample;
+    MapUse use;
     bool operator==(const Drawn&) const = default;
   };
   std::optional<Drawn> drawn_;  ///< what the maps hold
   PvrrMap map_;
   int multisample_ = 1;
+  MapUse use_ = MapUse::picture;
   std::size_t traced_rays_ = 0, scene_rays_ = 0, refinement_rays_ = 0;
 };
 

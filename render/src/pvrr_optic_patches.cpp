@@ -52,8 +52,10 @@ bool PvrrOptic::choose_patches(const RasterView& camera, bool remember) {
   if (scene_.settings.max_patches > 1 && !place_.nested && (lens || !is_plane(optic_))) {
     std::vector<VertexHit> hits = lens ? whole_lens_rays_.hits[0] : whole_hits_;
     for (VertexHit& hit : hits) hit.faces_eye = passes(hit);
+    // Of no parallax an exact ray is off by any pixels.
+    const double px_per_rad = use_ == MapUse::picture ? 0.5 * camera.size.y * camera.projection[1][1] : 0.0;
     labels = tree_.choose({optic_, tessellated_mesh(), hits, optics::in_own_frame(bounds_, placement_),
-                           scene_.settings.patch_fov_rad, 0.5 * camera.size.y * camera.projection[1][1],
+                           scene_.settings.patch_fov_rad, px_per_rad,
                            std::size_t(scene_.settings.max_patches), remember});
   }
   if (labels.count == 1) labels = {};

@@ -104,7 +104,7 @@ void PvrrStack::bounds_changed(const cad_import::BoundingBox& bounds) {
   });
 }
 
-void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels) {
+void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use) {
   levels_ = levels;
   bodies_.commit();
   left_out_ = 0;
@@ -112,7 +112,7 @@ void PvrrStack::update(const RasterView& camera, const FrameOptions& options, in
   std::vector<Node*> queue;
   for (std::size_t i = 0; i < roots_.size(); ++i) {
     Node& root = *roots_[i];
-    root.optic.update(camera, options);
+    root.optic.update(camera, options, 1, nullptr, use);
     // What an optic shows that the picture does not is of no interest.
     if (box_in_view(camera, bodies_.box(i)).seen)
       queue.push_back(&root);

@@ -30,8 +30,8 @@ class PvrrStack {
                    const cad_import::BoundingBox& bounds);
 
   /// Rays, views and sizes of all maps, from the top down: which optics a map shows depends on its view.
-  /// No deeper than `levels`.
-  void update(const RasterView& camera, const FrameOptions& options, int levels);
+  /// No deeper than `levels`. `use`: of the maps of the first level.
+  void update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use);
 
   /// All maps that have to be drawn, the deepest first. Overlays go into those of the first level alone.
   void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);

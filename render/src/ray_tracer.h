@@ -38,8 +38,8 @@ class RayTracer {
   std::size_t trace_pixels(const Camera& camera, const FrameOptions& options,
                            std::span<const std::uint32_t> pixels, Frame& frame) const;
 
-  /// Mode `exact`: the same for one sample, whose share is added to the colours in `frame`. What the rays
-  /// meet behind an optic is shaded only where its maps do not show it.
+  /// Mode `exact`: the same for one sample. What the rays meet behind an optic is shaded only where its maps
+  /// do not show it.
   std::size_t trace_mapped(const Camera& camera, const FrameOptions& options,
                            std::span<const std::uint32_t> pixels, const MappedSample& mapped,
                            Frame& frame) const;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "render/src/pixel_error.h"
+#include "render/src/shading_vector_clones.h"
 
 namespace catoptra::render {
 namespace {
@@ -16,26 +17,28 @@ bool meets_nothing(const optics::RayPacket16& rays, int i) {
   return rays.object[i] == optics::kNoHit;
 }
 
-MapQueries queries_of(const optics::RayPacket16& rays, float before_mm, const float (&half_pixel)[kLanes]) {
+CATOPTRA_VECTOR_CLONES void set_queries(const optics::RayPacket16& rays, float before_mm,
+                                        const float (&half_pixel)[kLanes], MapQueries& queries) {
   MapQueries q;
   for (int i = 0; i < kLanes; ++i) {
-    const bool sky = meets_nothing(rays, i);
-    const float x = rays.direction_x[i], y = rays.direction_y[i], z = rays.direction_z[i],
-                way = rays.t_max[i];
+    const int sky = rays.object[i] == optics::kNoHit;
+    const float x = rays.direction_x[i], y = rays.direction_y[i], z = rays.direction_z[i];
+    // Infinity times 0 is no number.
+    const float way = sky ? 1.0f : rays.t_max[i], from = float(1 - sky);
     q.sky[i] = sky;
     q.direction_x[i] = x;
     q.direction_y[i] = y;
     q.direction_z[i] = z;
-    q.point_x[i] = sky ? x : rays.origin_x[i] + way * x;
-    q.point_y[i] = sky ? y : rays.origin_y[i] + way * y;
-    q.point_z[i] = sky ? z : rays.origin_z[i] + way * z;
+    q.point_x[i] = from * rays.origin_x[i] + way * x;
+    q.point_y[i] = from * rays.origin_y[i] + way * y;
+    q.point_z[i] = from * rays.origin_z[i] + way * z;
     q.normal_x[i] = rays.normal_x[i];
     q.normal_y[i] = rays.normal_y[i];
     q.normal_z[i] = rays.normal_z[i];
-    q.distance[i] = sky ? 1 : before_mm + way;
+    q.distance[i] = from * before_mm + way;
     q.half_pixel[i] = half_pixel[i];
   }
-  return q;
+  queries = q;
 }
 
 /// The less of the two singular values of a matrix with these columns, whose directions are across a ray.
@@ -51,7 +54,8 @@ double least_singular_value(const glm::dvec3& x, const glm::dvec3& y) {
 void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays, const int (&optic)[kLanes],
                   std::uint32_t first_optic, float before_mm, const float (&half_pixel)[kLanes],
                   MapLanes& lanes) {
-  MapQueries queries = queries_of(rays, before_mm, half_pixel);
+  MapQueries queries;
+  set_queries(rays, before_mm, half_pixel, queries);
   std::fill(std::begin(lanes.answers.found), std::end(lanes.answers.found), 0);
   bool waiting[kLanes];
   for (int i = 0; i < kLanes; ++i) {
@@ -69,19 +73,23 @@ void find_in_maps(const MapColors& maps, const optics::RayPacket16& rays, const 
   }
 }
 
-void set_half_pixels(const MirrorRays& mirrored, const optics::RayPacket16& rays, double pixel,
-                     const double (&stretch)[kLanes], float (&half_pixel)[kLanes]) {
+CATOPTRA_VECTOR_CLONES void set_half_pixels(const MirrorRays& mirrored, const optics::RayPacket16& rays,
+                                            double pixel, const double (&stretch)[kLanes],
+                                            float (&half_pixel)[kLanes]) {
+  const double half = kHalf * pixel;
+  double least[kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    // Off the camera's axis a pixel is narrower, as seen from the eye, by up to the square of the stretch.
-    const double half_angle = kHalf * pixel / (stretch[i] * stretch[i]);
     const double sum = mirrored.wave_sum[i], product = mirrored.wave_product[i];
-    const double root = std::sqrt(std::max(0.0, sum * sum - 4 * product)),
-                 width = half_angle * mirrored.distance[i];
-    const double k1 = 0.5 * (sum - root), k2 = 0.5 * (sum + root), way = rays.t_max[i];
-    half_pixel[i] = meets_nothing(rays, i)
-                        ? float(width * std::min(std::abs(k1), std::abs(k2)))
-                        : float(width * std::min(std::abs(1 + way * k1), std::abs(1 + way * k2)));
+    const double difference = sum * sum - 4 * product, root = std::sqrt(difference > 0 ? difference : 1e-300);
+    const double k1 = 0.5 * (sum - root), k2 = 0.5 * (sum + root);
+    const int sky = rays.object[i] == optics::kNoHit;
+    const double way = sky ? 1.0f : rays.t_max[i], from = 1 - sky;
+    const double a = std::abs(from + way * k1), b = std::abs(from + way * k2);
+    least[i] = a < b ? a : b;
   }
+  for (int i = 0; i < kLanes; ++i)
+    // Off the camera's axis a pixel is narrower, as seen from the eye, by up to the square of the stretch.
+    half_pixel[i] = float(half / (stretch[i] * stretch[i]) * mirrored.distance[i] * least[i]);
 }
 
 void set_half_pixels(const BeamLanes& beams, const optics::RayPacket16& rays, float (&half_pixel)[kLanes]) {

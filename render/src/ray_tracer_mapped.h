@@ -19,7 +19,7 @@ struct MappedSample {
   std::span<const std::uint8_t> marks;  ///< per pixel; where all of a packet are kOpticPixel, nothing stands
                                         ///< before the optics; or empty
   std::span<std::uint8_t> traced;       ///< per pixel, set to 1: an optic shows there what no map knows
-  std::span<std::int32_t> owner;        ///< per pixel, set: the optic that shows there
+  std::span<std::int32_t> owner;        ///< per pixel, set: the optic that shows there; -1: none
 };
 
 /// What maps know of the hits of 16 rays.

@@ -64,6 +64,10 @@ bool show_optics_alone(const PixelPacket& pixels, std::span<const std::uint8_t> 
   return true;
 }
 
+bool any_active(const ShadeLanes& lanes) {
+  return std::any_of(std::begin(lanes.active), std::end(lanes.active), [](bool active) { return active; });
+}
+
 /// Where colours come from maps, what these show.
 void write_shown(const PixelPacket& pixels, const MapLanes& found, Frame& frame) {
   for (int i = 0; i < kLanes; ++i) {
@@ -247,7 +251,7 @@ std::size_t PacketTracer::refract(const PacketView& view, const PixelPacket& pix
         p.traced[i] = p.traced[i] || (found.asked[i] && !found.found(i));
       }
     }
-    shading_.shade(out.shade);
+    if (any_active(out.shade)) shading_.shade(out.shade);
     for (int i = 0; i < kLanes; ++i)
       if (found.found(i)) out.shade.radiance[i] = found.radiance(i);
     if (sample == 0 && geometry) {
@@ -287,7 +291,7 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
   reflect(camera, p);
   set_hits(camera, p);
   if (mapped && p.any_mirror) take_mirrored_colors(camera, mapped->maps, p);
-  shading_.shade(p.shade);
+  if (any_active(p.shade)) shading_.shade(p.shade);
   for (int i = 0; i < kLanes; ++i)
     if (p.found.found(i)) p.shade.radiance[i] = p.found.radiance(i);
   const bool geometry = sample == 0 && options.geometry;
@@ -337,15 +341,13 @@ std::size_t PacketTracer::trace_mapped(const PacketView& view, const FrameOption
                                        Frame& frame) const {
   Packet p;
   const std::size_t rays = trace_sample(view, options, pixels, 0, &mapped, frame, p);
-  const float share = 1 / float(std::max(1, options.samples));
   for (int i = 0; i < kLanes; ++i) {
     if (!pixels.active[i]) continue;
     const std::size_t at = index_of(pixels, i, frame);
-    const Float4 c = share * p.color[i];
-    frame.color[at] += glm::vec4(c[0], c[1], c[2], 0);
+    const Float4 c = p.color[i];
+    frame.color[at] = glm::vec4(c[0], c[1], c[2], 1);
     if (p.traced[i]) mapped.traced[at] = 1;
-    const bool through_lens = p.lens.any && p.lens.optic[i] >= 0;
-    if (through_lens || p.optic[i] >= 0) mapped.owner[at] = through_lens ? p.lens.optic[i] : p.optic[i];
+    mapped.owner[at] = p.lens.any && p.lens.optic[i] >= 0 ? p.lens.optic[i] : p.optic[i];
   }
   return rays;
 }

@@ -50,8 +50,7 @@ class PacketTracer {
   std::size_t trace(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                     Frame& frame) const;
 
-  /// Of one sample alone, whose share is added to the colours in `frame`; geometry is that of sample 0. What
-  /// maps do not know is shaded as in trace().
+  /// The same of one sample alone. What maps do not know is shaded as in trace().
   std::size_t trace_mapped(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                            const MappedSample& mapped, Frame& frame) const;
 

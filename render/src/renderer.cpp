@@ -47,15 +47,6 @@ cad_import::BoundingBox bounds_of(const optics::Optic& optic) {
   return box;
 }
 
-FrameCost cost_of(const RenderResult& result, Mode mode, double total_ms) {
-  FrameCost cost{total_ms, 0, -1};
-  if (mode != Mode::exact) return cost;
-  for (const char* pass : {"trace", "pass1", "pass2", "readback"})
-    if (const auto ms = result.stats.time_ms.find(pass); ms != result.stats.time_ms.end())
-      cost.pvrr_ms += ms->second;
-  return cost;
-}
-
 void drop_geometry(Frame& frame) {
   frame.position.clear();
   frame.surface.clear();
@@ -184,6 +175,7 @@ struct Renderer::Impl {
     const bool verify = choice.mode == Mode::exact && chooser->asks_for_verification();
     FrameOptions drawn = options;
     drawn.geometry = options.geometry || verify;
+    drawn.read_back = options.read_back || verify;
     auto [result, cost] = timed(choice.mode, camera, drawn);
     if (verify) {
       cost.wrong_share = wrong_share(result.frame, render(Mode::pvrr, camera, drawn).frame);
@@ -201,8 +193,7 @@ struct Renderer::Impl {
     const auto start = Clock::now();
     RenderResult result = render(mode, camera, options);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    const FrameCost cost = cost_of(result, mode, ms);
-    return {std::move(result), cost};
+    return {std::move(result), FrameCost{ms}};
   }
 
   RenderResult draw_samples(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
@@ -305,13 +296,14 @@ struct Renderer::Impl {
     bool operator==(const Accumulated&) const = default;
   };
   std::optional<Accumulated> accumulated;
-  Mode accumulated_mode = Mode::pvrr;  ///< which draws it
+  Mode accumulated_mode = Mode::pvrr;            ///< which draws it
+  std::optional<ModeChoice> accumulated_choice;  ///< mode automatic: why
 
   /// What mode automatic takes for a picture of one sample: the samples of a picture all have the same mode.
-  Mode chosen_mode(const Camera& camera, FrameOptions options) {
+  ModeChoice choice_for_samples(const Camera& camera, FrameOptions options) {
     options.samples = 1;
     options.geometry = options.read_back = false;
-    return render_automatically(camera, options).choice->mode;
+    return *render_automatically(camera, options).choice;
   }
 
   void stop_accumulating() {
@@ -334,13 +326,17 @@ RenderResult Renderer::accumulate(Mode mode, const Camera& camera, const FrameOp
   const Impl::Accumulated asked{mode, camera, options};
   if (impl_->accumulated != asked) {
     impl_->stop_accumulating();
-    impl_->accumulated_mode = mode == Mode::automatic ? impl_->chosen_mode(camera, options) : mode;
+    impl_->accumulated_choice.reset();
+    if (mode == Mode::automatic) impl_->accumulated_choice = impl_->choice_for_samples(camera, options);
+    impl_->accumulated_mode = impl_->accumulated_choice ? impl_->accumulated_choice->mode : mode;
     impl_->samples.restart();
     impl_->accumulated = asked;
   }
   const int until = std::min(impl_->samples.count() + std::max(more, 1), options.samples);
   try {
-    return impl_->render_until(impl_->accumulated_mode, camera, options, until);
+    RenderResult result = impl_->render_until(impl_->accumulated_mode, camera, options, until);
+    result.choice = impl_->accumulated_choice;
+    return result;
   } catch (...) {
     impl_->stop_accumulating();
     throw;

@@ -275,6 +275,27 @@ TEST(BenchCommand, JsonHasEveryRatio) {
     EXPECT_GT(report.at(key).get<double>(), 0) << key;
   EXPECT_NE(run_catoptra({"bench", scene, "--frames", "1", "--modes", "hybrid"}).output.find("hybrid"),
             std::string::npos);
+  EXPECT_EQ(report.at("multisample"), 1);
+}
+
+TEST(BenchCommand, TimesMultisampledPictures) {
+  const TemporaryFolder folder;
+  const std::string scene = write_test_scene(folder).string();
+  const CommandResult result = run_catoptra(
+      {"bench", scene, "--frames", "1", "--modes", "pvrr,hybrid,exact", "--multisample", "4", "--json"});
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const json report = json::parse(result.output);
+  EXPECT_EQ(report.at("multisample"), 4);
+  // Modes that trace outlines softly send more rays than there are pixels to trace.
+  const auto rays = [](const json& r, const char* mode) {
+    return r.at("modes").at(mode).at("rays_per_frame").get<int>();
+  };
+  const json plain = json::parse(
+      run_catoptra({"bench", scene, "--frames", "1", "--modes", "hybrid,exact", "--json"}).output);
+  EXPECT_GT(rays(report, "hybrid"), rays(plain, "hybrid"));
+  EXPECT_GT(rays(report, "exact"), rays(plain, "exact"));
+  EXPECT_EQ(rays(report, "raytrace"), rays(plain, "raytrace"));
+  EXPECT_EQ(run_catoptra({"bench", scene, "--multisample", "3"}).code, 2);
 }
 
 }  // namespace

@@ -43,6 +43,43 @@ TEST_P(EveryMode, AccumulatedOneByOneItIsThePictureOfAllSamplesByteForByte) {
     }
 }
 
+/// All samples of a picture have one mode, which the first picture of one sample decides.
+TEST(Antialias, AutoAccumulatesByOneModeAndSaysWhich) {
+  for (const Scene& scene : {small_mirror_scene(), small_lens_scene()}) {
+    const FrameOptions options = picture_of(scene, 8);
+    Renderer renderer(scene);
+    RenderResult so_far;
+    for (int call = 1; call <= 4; ++call) {
+      so_far = renderer.accumulate(Mode::automatic, scene.camera, options, 2);
+      ASSERT_TRUE(so_far.choice);
+      EXPECT_NE(so_far.choice->mode, Mode::automatic);
+      EXPECT_EQ(so_far.stats.samples, 2 * call);
+    }
+    expect_same(so_far.frame, Renderer(scene).render(so_far.choice->mode, scene.camera, options).frame);
+    // Moved, it may choose another; what it shows is whole again.
+    Camera moved = scene.camera;
+    moved.eye_mm.x += 1;
+    const RenderResult anew = renderer.accumulate(Mode::automatic, moved, options, 8);
+    ASSERT_TRUE(anew.choice);
+    expect_same(anew.frame, Renderer(scene).render(anew.choice->mode, moved, options).frame);
+    EXPECT_FALSE(renderer.accumulate(Mode::raytrace, moved, options).choice);
+  }
+}
+
+/// With pictures left on the GPU pvrr was verified by a picture that was not there: a crash, in the scenes
+/// where pvrr may be the fastest.
+TEST(Antialias, AutoVerifiesPicturesThatAreNotReadBack) {
+  for (const Scene& scene : {small_mirror_scene(), small_lens_scene()}) {
+    FrameOptions options = picture_of(scene, 1, false);
+    options.read_back = false;
+    Renderer renderer(scene);
+    RenderResult result;
+    for (int i = 0; i < 12; ++i) result = renderer.render(Mode::automatic, scene.camera, options);
+    ASSERT_TRUE(result.choice);
+    EXPECT_EQ(result.choice->costs.size(), 4u);
+  }
+}
+
 TEST_P(EveryMode, AccumulatesAnewWhereAnythingChanges) {
   const Scene scene = small_mirror_scene();
   const FrameOptions options = picture_of(scene, 64, false);
