@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "render/src/lens_rays.h"
@@ -26,6 +27,12 @@ constexpr double kSplit = 0.75;
 constexpr double kKeep = 0.5;
 // Each level divides a smooth error by four: this is a factor of 1e6.
 constexpr int kMostLevels = 10;
+// The part of the error that is odd about the middle of an edge vanishes there; it is found from the rays'
+// differentials, so far from the ends, as a share of the edge.
+constexpr double kBesideEnd = 1.0 / 64;
+// It is largest a quarter of the way from either end or nearly so, where the even part is at 3/4: x (1 - x)
+// (x - 1/2) at x = 1/4.
+constexpr double kCubicShare = 3.0 / 64;
 constexpr std::size_t kEdgesPerTask = 64;
 
 }  // namespace
@@ -130,38 +137,48 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
     asked[i] = places[i] == EdgePlace::inside || places[i] == EdgePlace::beyond;
   trace_middles(request, asked);
 
-  std::vector<glm::dvec3> shown(edges.size(), glm::dvec3(0.5, 0.5, 1));
-  std::vector<VertexHit> rays(edges.size());
-  std::vector<double> near(edges.size(), 0);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i].ends;
-    asked[i] = places[i] == EdgePlace::inside && passes(rays_[twin_[edges[i].node]]);
-    if (!asked[i]) continue;
-    const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
-    near[i] = 0.5 * (nearness(hits_[a]) + nearness(hits_[b]));
-    rays[i] = ray_through(rays_[twin_[edges[i].node]], point - mesh_->middle(edges[i]).position_mm, near[i]);
-    shown[i] = 0.5 * (coordinates_[a] + coordinates_[b]);
-  }
-  std::vector<std::uint32_t> patch(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) patch[i] = patch_[edges[i].ends[0]];
-  const auto exact = patch_coordinates_like(shown, rays, patch, request.views);
-
   std::vector<double> errors(edges.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), kEdgesPerTask), [&](const auto& some) {
     for (std::size_t i = some.begin(); i < some.end(); ++i) {
-      if (!asked[i]) continue;
+      if (places[i] != EdgePlace::inside) continue;
       const auto [a, b] = edges[i].ends;
-      const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
-      const glm::dvec2 off = glm::dvec2(shown[i]) / shown[i].z - glm::dvec2(exact[i]) / exact[i].z;
-      const double error = map_error_px(picture_place(request.camera, point), request.views[patch[i]],
-                                        rays[i], near[i], glm::distance(point, eye_mm_), off);
+      const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b])),
+                   error = inside_error_px(request, edges[i]);
       // No error is larger than the edge: it is what an edge next to a caustic or the map's horizon gives.
-      const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b]));
       errors[i] = std::isfinite(error) ? std::min(error, length_px) : length_px;
     }
   });
   if (is_lens(request)) add_border_errors(request, places, pixels, errors);
   return errors;
+}
+
+double PvrrRefinement::inside_error_px(const RefinementRequest& request, const EdgeMiddle& edge) const {
+  const VertexHit& middle = rays_[twin_[edge.node]];
+  // Between two ends where light passes a lens: something stands in its way.
+  if (!passes(middle)) return is_lens(request) ? std::numeric_limits<double>::infinity() : 0;
+  const auto [a, b] = edge.ends;
+  const auto& vertices = mesh_->mesh().vertices;
+  const glm::dvec3 from = vertices[a].position_mm, step = vertices[b].position_mm - from,
+                   point = from + 0.5 * step;
+  const optics::VirtualView& view = request.views[patch_[a]];
+  const auto near_at = [&](double share) {
+    return (1 - share) * nearness(hits_[a]) + share * nearness(hits_[b]);
+  };
+  const auto off = [&](double share, const VertexHit& known, const glm::dvec3& known_mm) {
+    return map_off(view, (1 - share) * coordinates_[a] + share * coordinates_[b],
+                   ray_through(known, from + share * step - known_mm, near_at(share)));
+  };
+  const glm::dvec2 in_middle = off(0.5, middle, mesh_->middle(edge).position_mm);
+  // The error x (1 - x) (4 m + c (x - 1/2)) has c as the sum of its slopes at both ends, less its sign.
+  const glm::dvec2 cubic =
+      (off(1 - kBesideEnd, hits_[b], vertices[b].position_mm) - off(kBesideEnd, hits_[a], from)) / kBesideEnd;
+  const double near = near_at(0.5);
+  const VertexHit ray = ray_through(middle, point - mesh_->middle(edge).position_mm, near);
+  const PicturePlace place = picture_place(request.camera, point);
+  const auto in_px = [&](const glm::dvec2& off_map) {
+    return map_error_px(place, view, ray, near, glm::distance(point, eye_mm_), off_map);
+  };
+  return std::max(in_px(in_middle), in_px(0.75 * in_middle) + in_px(kCubicShare * cubic));
 }
 
 std::vector<char> PvrrRefinement::choose(const RefinementRequest& request, std::span<const double> errors) {

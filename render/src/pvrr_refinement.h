@@ -75,8 +75,8 @@ class PvrrRefinement {
   [[nodiscard]] double error_left_px() const { return error_left_px_; }
 
  private:
-  /// Where the ends of an edge lie: both where light passes (or a mirror reflects); one; neither, but in a
-  /// triangle with a corner where it does; anywhere else, or off the picture.
+  /// Where the ends of an edge lie: both where light passes (or a mirror reflects); one; neither, but each in
+  /// a triangle with a corner where it does; anywhere else, or off the picture.
   enum class EdgePlace : std::uint8_t { inside, border, beyond, elsewhere };
 
   [[nodiscard]] static bool is_lens(const RefinementRequest& request) {
@@ -84,6 +84,8 @@ class PvrrRefinement {
   }
   void prepare(const RefinementRequest& request);
   [[nodiscard]] std::vector<double> edge_errors(const RefinementRequest& request);
+  [[nodiscard]] double inside_error_px(const RefinementRequest& request,
+                                       const tessellate::EdgeMiddle& edge) const;
   void find_twins();
   void trace_middles(const RefinementRequest& request, std::span<const char> asked);
   [[nodiscard]] std::vector<EdgePlace> edge_places(const RefinementRequest& request,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <unordered_set>
 #include <utility>
 
 #include "optics/map_coordinates.h"
@@ -21,21 +20,14 @@ using optics::VertexHit;
 
 constexpr std::size_t kBordersPerTask = 16;
 
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-}
-
-/// The sides opposite to a corner where light passes, between two where it does not.
-std::unordered_set<std::uint64_t> sides_beyond(const tessellate::OpticArrays& mesh,
-                                               std::span<const VertexHit> hits) {
-  std::unordered_set<std::uint64_t> sides;
+/// Per vertex, whether it is a corner of a triangle of which `holds` is true.
+template <typename Holds>
+std::vector<char> corners_of(const tessellate::OpticArrays& mesh, const Holds& holds) {
+  std::vector<char> corner(mesh.vertices.size(), 0);
   for (const auto& triangle : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangle.vertices[(k + 1) % 3], b = triangle.vertices[(k + 2) % 3];
-      if (passes(hits[triangle.vertices[k]]) && !passes(hits[a]) && !passes(hits[b]))
-        sides.insert(key_of(a, b));
-    }
-  return sides;
+    if (holds(triangle.vertices))
+      for (const std::uint32_t v : triangle.vertices) corner[v] = 1;
+  return corner;
 }
 
 }  // namespace
@@ -43,17 +35,22 @@ std::unordered_set<std::uint64_t> sides_beyond(const tessellate::OpticArrays& me
 std::vector<PvrrRefinement::EdgePlace> PvrrRefinement::edge_places(const RefinementRequest& request,
                                                                    std::span<const glm::dvec3> pixels) const {
   const auto edges = mesh_->new_edges();
-  const auto beyond =
-      is_lens(request) ? sides_beyond(mesh_->mesh(), hits_) : std::unordered_set<std::uint64_t>();
+  const auto& mesh = mesh_->mesh();
+  // What an edge outside the picture shows reaches into it by the third corner.
+  const std::vector<char> on_screen = corners_of(mesh, [&](const auto& v) {
+    return !off_screen(request.camera, {pixels[v[0]], pixels[v[1]], pixels[v[2]]});
+  });
+  const std::vector<char> beside = corners_of(
+      mesh, [&](const auto& v) { return passes(hits_[v[0]]) || passes(hits_[v[1]]) || passes(hits_[v[2]]); });
   std::vector<EdgePlace> places(edges.size(), EdgePlace::elsewhere);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto [a, b] = edges[i].ends;
-    if (off_screen(request.camera, pixels[a], pixels[b])) continue;
+    if (!on_screen[a] || !on_screen[b]) continue;
     if (passes(hits_[a]) && passes(hits_[b]))
       places[i] = EdgePlace::inside;
     else if (is_lens(request) && passes(hits_[a]) != passes(hits_[b]))
       places[i] = EdgePlace::border;
-    else if (beyond.count(key_of(a, b)) != 0)
+    else if (is_lens(request) && beside[a] && beside[b])
       places[i] = EdgePlace::beyond;
   }
   return places;
@@ -117,13 +114,23 @@ double PvrrRefinement::border_error_px(const RefinementRequest& request, const t
   exact.direction = border.path.outside;
   const double near = between(nearness(known), nearness(beyond));
   exact = ray_through(exact, glm::dvec3(0), near);
-  const std::vector<glm::dvec3> shown{between(coordinates_[from], coordinates_[to])};
+  const glm::dvec3 shown = between(coordinates_[from], coordinates_[to]);
   const optics::VirtualView& view = request.views[patch_[from]];
-  const glm::dvec3 right = optics::map_coordinates_like(shown, std::span(&exact, 1), view)[0];
-  border_coordinates_.push_back({patch_[from], right});
+  border_coordinates_.push_back(
+      {patch_[from], optics::map_coordinates_like(std::span(&shown, 1), std::span(&exact, 1), view)[0]});
   const PicturePlace place = picture_place(request.camera, point);
-  const double in_map = map_error_px(place, view, exact, near, glm::distance(point, eye_mm_),
-                                     glm::dvec2(shown[0]) / shown[0].z - glm::dvec2(right) / right.z),
+  const auto in_px = [&](const glm::dvec2& off) {
+    return map_error_px(place, view, exact, near, glm::distance(point, eye_mm_), off);
+  };
+  const glm::dvec2 off = map_off(view, shown, exact);
+  // Splits nearby give the end beyond a better ray, towards the one that it would have if the lens went on.
+  // Then interpolation errs most inside [0, share] by c x (1 - x) / 2, where what the known end's
+  // differentials tell errs by c share^2 / 2 at `share`.
+  const glm::dvec3 step =
+      share * (mesh_->mesh().vertices[to].position_mm - mesh_->mesh().vertices[from].position_mm);
+  const double by_known = in_px(off - map_off(view, shown, ray_through(known, step, near))),
+               later = by_known * (share < 0.5 ? (1 - share) / share : 0.25 / (share * share));
+  const double in_map = std::max(in_px(off), later),
                at_exit = surface_error_px(
                    place, known,
                    between(known.surface_point_mm, beyond.surface_point_mm) - exact.surface_point_mm);

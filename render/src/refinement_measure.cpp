@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <span>
+
+#include "optics/map_coordinates.h"
+#include "render/src/turn_steps.h"
 
 namespace catoptra::render {
 namespace {
 
 using optics::VertexHit;
 
-// Edges that lie outside the picture by this share of its size on one side are left alone.
-constexpr double kOffScreen = 0.1;
-// Where an optic magnifies, against the direct view, by more than this, what it shows between two pixels is
-// less than the error can be told from: near a caustic one pixel shows (nearly) one direction only.
-constexpr double kMostMagnification = 20;
+// Triangles that lie outside the picture by so much on one side are left alone: samples within pixels and
+// filters reach that far.
+constexpr double kOffScreen_px = 4;
 
 /// Angle, as a vector across the ray, that `off` in map coordinates stands for.
 glm::dvec3 angle_of(const optics::VirtualView& view, const VertexHit& ray, double near, glm::dvec2 off) {
@@ -28,15 +32,13 @@ glm::dvec3 angle_of(const optics::VirtualView& view, const VertexHit& ray, doubl
   return angle - glm::dot(angle, ray.direction) * ray.direction;
 }
 
-/// Least squares for the step that changes a value by `wanted`, damped where it changes by less than `least`
-/// per mm; in pixels.
+/// The step in pixels that changes a value by `wanted` which changes by `by_right` and `by_up` per mm.
 double pixels_for(const PicturePlace& place, const glm::dvec3& by_right, const glm::dvec3& by_up,
-                  const glm::dvec3& wanted, double least) {
-  const double a = glm::dot(by_right, by_right) + least * least, b = glm::dot(by_right, by_up),
-               c = glm::dot(by_up, by_up) + least * least, determinant = a * c - b * b;
-  const double u = glm::dot(by_right, wanted), v = glm::dot(by_up, wanted);
-  const glm::dvec2 moved_mm((c * u - b * v) / determinant, (a * v - b * u) / determinant);
-  return glm::length(place.pixels * moved_mm);
+                  const glm::dvec3& wanted, double least_per_mm) {
+  const glm::dmat2 mm = glm::inverse(place.pixels);
+  const double mm_per_px = std::sqrt(std::abs(glm::determinant(mm)));
+  return steps_to_turn(mm[0].x * by_right + mm[0].y * by_up, mm[1].x * by_right + mm[1].y * by_up, wanted,
+                       least_per_mm * mm_per_px);
 }
 
 }  // namespace
@@ -55,11 +57,14 @@ PicturePlace picture_place(const RasterView& camera, const glm::dvec3& at_mm) {
   return place;
 }
 
-bool off_screen(const RasterView& camera, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec2 margin = kOffScreen * glm::dvec2(camera.size);
-  return (a.z <= 0 || b.z <= 0) || std::max(a.x, b.x) < -margin.x ||
-         std::min(a.x, b.x) > camera.size.x + margin.x || std::max(a.y, b.y) < -margin.y ||
-         std::min(a.y, b.y) > camera.size.y + margin.y;
+bool off_screen(const RasterView& camera, const std::array<glm::dvec3, 3>& corners) {
+  glm::dvec3 low = corners[0], high = corners[0];
+  for (const glm::dvec3& corner : corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  return low.z <= 0 || high.x < -kOffScreen_px || low.x > camera.size.x + kOffScreen_px ||
+         high.y < -kOffScreen_px || low.y > camera.size.y + kOffScreen_px;
 }
 
 double nearness(const VertexHit& hit) {
@@ -78,20 +83,28 @@ VertexHit ray_through(const VertexHit& middle, const glm::dvec3& offset_mm, doub
   return ray;
 }
 
+glm::dvec2 map_off(const optics::VirtualView& view, const glm::dvec3& shown, const VertexHit& ray) {
+  const glm::dvec3 exact = optics::map_coordinates_like(std::span(&shown, 1), std::span(&ray, 1), view)[0];
+  return glm::dvec2(shown) / shown.z - glm::dvec2(exact) / exact.z;
+}
+
 double map_error_px(const PicturePlace& place, const optics::VirtualView& view, const VertexHit& ray,
                     double near, double eye_distance_mm, glm::dvec2 off) {
   const auto turn = [&](const glm::dvec3& along) {
     const glm::dvec3 t = ray.differential.direction * along + near * (ray.differential.point * along);
     return t - glm::dot(t, ray.direction) * ray.direction;
   };
-  // Damped where the turn per mm is below that of the direct view over kMostMagnification.
   return pixels_for(place, turn(place.right), turn(place.up), angle_of(view, ray, near, off),
                     1 / (kMostMagnification * eye_distance_mm));
 }
 
 double surface_error_px(const PicturePlace& place, const VertexHit& ray, const glm::dvec3& off_mm) {
-  return pixels_for(place, ray.differential.point * place.right, ray.differential.point * place.up, off_mm,
-                    1 / kMostMagnification);
+  const glm::dvec3 by_right = ray.differential.point * place.right, by_up = ray.differential.point * place.up,
+                   normal = glm::cross(by_right, by_up);
+  const double area = glm::length(normal);
+  if (!(area > 0)) return 0;  // a point: nothing moves on it
+  const glm::dvec3 n = normal / area;
+  return pixels_for(place, by_right, by_up, off_mm - glm::dot(off_mm, n) * n, 1 / kMostMagnification);
 }
 
 }  // namespace catoptra::render

@@ -1,6 +1,7 @@
 // By how many pixels what interpolation shows on an optic is off the exact ray (docs/decisions/0008).
 #pragma once
 
+#include <array>
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -18,8 +19,8 @@ struct PicturePlace {
 };
 [[nodiscard]] PicturePlace picture_place(const RasterView& camera, const glm::dvec3& at_mm);
 
-/// Whether an edge between two places in the picture (pixels, and depth) lies well outside it on one side.
-[[nodiscard]] bool off_screen(const RasterView& camera, const glm::dvec3& a, const glm::dvec3& b);
+/// Whether a triangle between three places in the picture (pixels, and depth) lies outside it on one side.
+[[nodiscard]] bool off_screen(const RasterView& camera, const std::array<glm::dvec3, 3>& corners);
 
 /// 1 / distance from the optic to what the ray meets; 0: the sky.
 [[nodiscard]] double nearness(const optics::VertexHit& hit);
@@ -29,6 +30,10 @@ struct PicturePlace {
 /// passes for an error of interpolation.
 [[nodiscard]] optics::VertexHit ray_through(const optics::VertexHit& middle, const glm::dvec3& offset_mm,
                                             double near);
+
+/// Map coordinates shown (homogeneous) less those of `ray` (not homogeneous).
+[[nodiscard]] glm::dvec2 map_off(const optics::VirtualView& view, const glm::dvec3& shown,
+                                 const optics::VertexHit& ray);
 
 /// The step on the picture, in pixels, over which the exact rays turn as far as from `ray` to what is shown
 /// instead, from where the map shows it: `off` in map coordinates.
