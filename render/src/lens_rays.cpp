@@ -13,9 +13,6 @@ namespace {
 using optics::LensPathEnd;
 using optics::VertexHit;
 
-// Corner vertices may have none but continued neighbours.
-constexpr int kContinuedRings = 2;
-
 constexpr std::size_t kVerticesPerTask = 64;
 
 float way_through(const VertexHit& hit, const glm::dvec3& vertex_mm) {
@@ -127,9 +124,9 @@ std::vector<optics::Arrival> arrivals_at(const tessellate::OpticArrays& mesh, co
   return arrivals;
 }
 
-void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<VertexHit>& hits) {
+void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<VertexHit>& hits, int rings) {
   for (VertexHit& hit : hits) hit.faces_eye = passes(hit);
-  for (int ring = 0; ring < kContinuedRings; ++ring) continue_once(mesh, hits);
+  for (int ring = 0; ring < rings; ++ring) continue_once(mesh, hits);
 }
 
 std::vector<float> ways_through(const tessellate::OpticArrays& mesh, std::span<const VertexHit> hits) {
@@ -172,7 +169,7 @@ LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& t
   const std::vector<optics::Arrival> arrivals = arrivals_at(mesh, arrival);
   for (const optics::SpectralSample& sample : rays.samples) {
     auto hits = optics::refract_vertices(lens, tracer, rays.entered, sample.wavelength_nm, arrivals);
-    continue_beyond_border(mesh, hits);
+    continue_beyond_border(mesh, hits, kRingsOfTessellated);
     rays.open.push_back(ways_through(mesh, hits));
     rays.hits.push_back(std::move(hits));
   }

@@ -53,8 +53,13 @@ using ArrivalAt = std::function<optics::Arrival(const glm::dvec3& point_mm)>;
                                         optics::LensSide entered, const ArrivalAt& arrival);
 
 /// Gives vertices beside those whose light passes the ray that their neighbours' differentials ask for, the
-/// nearest most; what vertices had been given so before is forgotten.
-void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<optics::VertexHit>& hits);
+/// nearest most; what vertices had been given so before is forgotten. `rings`: as many times, each time from
+/// those that have one by then.
+void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<optics::VertexHit>& hits,
+                            int rings);
+/// So many in a mesh as tessellated, where a corner may have none but continued neighbours. In a refined one
+/// a triangle that light passes has a corner where it does.
+inline constexpr int kRingsOfTessellated = 2, kRingsOfRefined = 1;
 
 /// LensRays::open of each vertex.
 [[nodiscard]] std::vector<float> ways_through(const tessellate::OpticArrays& mesh,

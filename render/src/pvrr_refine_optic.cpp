@@ -93,7 +93,7 @@ void PvrrOptic::refine_lens(bool remember) {
   for (std::size_t k = 1; k < lens_rays_.hits.size(); ++k) {
     std::vector<VertexHit> hits = lens_rays_.hits[k];
     hits.insert(hits.end(), refined_paths_[k - 1].begin(), refined_paths_[k - 1].end());
-    continue_beyond_border(mesh, hits);
+    continue_beyond_border(mesh, hits, kRingsOfRefined);
     refined_rays_.open.push_back(ways_through(mesh, hits));
     // The others have theirs.
     std::vector<std::uint32_t> without;

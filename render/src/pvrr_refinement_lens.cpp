@@ -104,7 +104,8 @@ double PvrrRefinement::border_error_px(const RefinementRequest& request, const t
     error = length_px * std::max({0.0, shown - border.blocked, border.passed - shown});
   }
   const double share = border.passed;
-  if (share == 0) return error;
+  // Nothing is measured where the border lies so close to the vertex that all may be off but that.
+  if (share == 0) return std::max(error, kBorderShare * length_px);
   if (!beyond.faces_eye) return share * length_px;  // nothing is known there, or the map has no place for it
   const auto between = [&](const auto& a, const auto& b) { return (1 - share) * a + share * b; };
   const glm::dvec3 point =
@@ -151,7 +152,7 @@ std::vector<char> PvrrRefinement::whole_groups(std::span<const char> wanted) con
 }
 
 void PvrrRefinement::continue_rays(const RefinementRequest& request) {
-  continue_beyond_border(mesh_->mesh(), hits_);
+  continue_beyond_border(mesh_->mesh(), hits_, kRingsOfRefined);
   open_ = ways_through(mesh_->mesh(), hits_);
   std::vector<std::uint32_t> beyond;
   for (std::uint32_t i = 0; i < hits_.size(); ++i)
