@@ -64,7 +64,7 @@ void PvrrOptic::refine(const RasterView& camera, bool remember) {
                       lens ? std::span<const float>(lens_rays_.open[0]) : std::span<const float>(),
                       cut_coordinates_, views_, patches_.patch, *traced_from_,
                       [this](const glm::dvec3& point) { return arrival_at(point); }, camera,
-                      scene_.settings.max_error_px, remember,
+                      scene_.settings.max_error_px * texels_before_, remember,
                       [this](std::vector<VertexHit> rays) { return with_hits(std::move(rays)); }});
   refinement_rays_ = refinement_.traced_rays();
   scene_rays_ += refinement_.scene_rays();
