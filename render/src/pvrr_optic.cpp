@@ -144,7 +144,7 @@ optics::Arrival PvrrOptic::arrival_at(const glm::dvec3& own_point_mm) const {
     if (const auto light = above_->light_to(placement_.point(own_point_mm))) {
       const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
       return {placement_.own_point(light->origin_mm), placement_.own_direction(light->direction),
-              to_own * light->turn * to_world};
+              to_own * light->turn * to_world, light->beyond_mm};
     }
   return optics::arrival_from_eye(*traced_from_, own_point_mm);
 }
@@ -155,7 +155,7 @@ std::optional<optics::Arrival> PvrrOptic::light_to(const glm::dvec3& point_mm) c
   if (!light) return std::nullopt;
   const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
   return optics::Arrival{placement_.point(light->origin_mm), placement_.direction(light->direction),
-                         to_world * light->turn * to_own};
+                         to_world * light->turn * to_own, light->beyond_mm};
 }
 
 void PvrrOptic::find_hits() {

@@ -160,6 +160,8 @@ double PvrrRefinement::inside_error_px(const RefinementRequest& request, const E
   const auto& vertices = mesh_->mesh().vertices;
   const glm::dvec3 from = vertices[a].position_mm, step = vertices[b].position_mm - from,
                    point = from + 0.5 * step;
+  // Farther beyond what the optic above lets pass than the edge is long, nobody sees what it shows.
+  if (std::min({hits_[a].beyond_mm, hits_[b].beyond_mm, middle.beyond_mm}) > glm::length(step)) return 0;
   const optics::VirtualView& view = request.views[patch_[a]];
   const auto near_at = [&](double share) {
     return (1 - share) * nearness(hits_[a]) + share * nearness(hits_[b]);
