@@ -28,7 +28,8 @@ class PassedLight {
               std::span<const VertexHit> rays, ArrivalAt arrival);
 
   /// Nullopt where no ray is found, as for points that the optic has its back to, and on caustics. Beyond the
-  /// border of the optic the light goes on as if its surface did, as far as that is known.
+  /// border of the optic the light goes on as if its surface did, as far as that is known; beyond that of what
+  /// a lens lets pass by the differentials of the last ray that passes (`beyond_mm` tells how far).
   [[nodiscard]] std::optional<Arrival> to(const glm::dvec3& point_mm) const;
 
  private:

@@ -26,6 +26,7 @@ struct Arrival {
   glm::dvec3 origin_mm{0};  ///< the eye, or the last point on another optic; the ray passes it and the point
   glm::dvec3 direction{0};  ///< unit, from there to the point
   glm::dmat3 turn{0};       ///< change of `direction` per mm by which the point moves across it, 1/mm
+  double beyond_mm = 0;     ///< so far beyond the border of what another optic lets pass; 0: light comes here
 };
 
 [[nodiscard]] Arrival arrival_from_eye(const glm::dvec3& eye_mm, const glm::dvec3& point_mm);
@@ -40,6 +41,7 @@ struct VertexHit {
   double transmittance = 1;               ///< Fresnel, unpolarised; 1 for mirrors, whose reflectance is the
                                           ///< optic's
   glm::dvec3 from_eye{0};                 ///< unit direction in which the eye's ray arrives
+  double beyond_mm = 0;                   ///< Arrival::beyond_mm
   RayDifferential differential;           ///< valid where faces_eye
   Hit scene_hit;                          ///< nearest hit among the surroundings; empty: the sky
   glm::dvec3 hit_point_mm{0};             ///< valid where scene_hit is

@@ -27,7 +27,9 @@ struct OpticError {
   /// direction and what is shown.
   ErrorQuantiles arcmin;
   /// The same in pixels, through the local derivative of the exact last ray by pixel, among pixels of the
-  /// same path. Left out on caustics, where it is singular.
+  /// same path. Towards caustics, where that derivative vanishes in one direction or both and no picture
+  /// tells one pixel from the next, the optic counts as if it magnified 20 times against the direct view of
+  /// the scene's camera.
   ErrorQuantiles screen_px;
   /// Of the pixels compared, those whose picture shows another surface than the exact ray meets: what is
   /// shown lies off the plane of the exact point by more than its angle explains, or one of the two is the

@@ -20,6 +20,10 @@ constexpr int kMostSteps = 8;
 constexpr double kLinear_mm = 0.05;
 // Steps past the optic's own size lead nowhere.
 constexpr double kLongestStep = 1.0;
+// Where light does not pass as far as a step leads, it is followed to the border within this share of the
+// step: what goes on from there by differentials alone errs with the square of the distance, and by how much
+// must not depend on where the search began.
+constexpr double kLeastShare = 1.0 / 32;
 
 struct Basis {
   glm::dvec3 a, b;  // unit, across the direction and each other
@@ -143,17 +147,25 @@ std::optional<Arrival> PassedLight::to(const glm::dvec3& point_mm) const {
   const auto start = nearest(point_mm);
   if (!start) return std::nullopt;
   Place place{side_.mesh->vertices[*start], rays_[*start]};
-  for (int step = 0;; ++step) {
+  double share = 1;
+  for (int step = 0;;) {
     const auto miss = miss_of(place.ray, point_mm);
     if (!miss) return std::nullopt;
     const glm::dvec2 across_mm = glm::inverse(miss->by_step) * miss->at;
     const double length = glm::length(across_mm);
     if (!(length < kLongestStep * reach_mm_)) return std::nullopt;
     const glm::dvec3 step_mm = across_mm.x * miss->in.a + across_mm.y * miss->in.b;
-    const auto next = length < kLinear_mm || step == kMostSteps ? std::nullopt : moved(place, step_mm);
-    // Where light does not pass it goes on from here by its differentials.
-    if (!next) return arrival_by(place.ray, *miss, step_mm, point_mm);
+    std::optional<Place> next;
+    if (step < kMostSteps)
+      for (; !next && share * length >= kLinear_mm && share >= kLeastShare; share *= next ? 1 : 0.5)
+        next = moved(place, share * step_mm);
+    if (!next) {
+      Arrival arrival = arrival_by(place.ray, *miss, step_mm, point_mm);
+      arrival.beyond_mm = std::max(length < kLinear_mm ? 0 : length, place.ray.beyond_mm);
+      return arrival;
+    }
     place = *next;
+    ++step;
   }
 }
 

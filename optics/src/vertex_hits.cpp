@@ -29,6 +29,7 @@ VertexHit arrived(const tessellate::OpticVertex& vertex, const Arrival& arrival)
   VertexHit hit;
   hit.surface_point_mm = vertex.position_mm;
   hit.from_eye = arrival.direction;
+  hit.beyond_mm = arrival.beyond_mm;
   return hit;
 }
 

@@ -10,6 +10,7 @@
 #include "render/image_io.h"
 #include "render/src/flip.h"
 #include "render/src/pixel_error.h"
+#include "render/src/turn_steps.h"
 
 namespace catoptra::render {
 namespace {
@@ -60,6 +61,9 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
   result.optics.resize(scene.optics.size());
   std::vector<std::vector<double>> arcmin(scene.optics.size()), pixels(scene.optics.size()),
       visible(scene.optics.size());
+  // A pixel of the direct view, at the picture's centre.
+  const double least_turn_rad =
+      2 * std::tan(0.5 * scene.camera.fov_rad) / reference.height / kMostMagnification;
   for (std::size_t i = 0; i < reference.color.size(); ++i) {
     const std::int32_t exact = reference.optic_id[i], shown = frame.optic_id[i];
     for (const std::int32_t id : {exact, shown})
@@ -78,7 +82,7 @@ Comparison compare(const Frame& reference, const Frame& frame, const Scene& scen
     if (!direction) continue;
     arcmin[std::size_t(exact)].push_back(kArcminPerRad *
                                          angle(*direction, glm::dvec3(reference.direction[i])));
-    const auto px = screen_error(reference, frame, i, *direction);
+    const auto px = screen_error(reference, frame, i, *direction, least_turn_rad);
     if (px) pixels[std::size_t(exact)].push_back(*px);
     if (!same_surface(reference, frame, i, *direction))
       ++result.optics[std::size_t(exact)].occlusion_pixels;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -37,16 +38,44 @@ struct LensRays {
 /// spectral_samples() with the middle one, to which geometry belongs, first.
 [[nodiscard]] std::vector<optics::SpectralSample> samples_of(const optics::Optic& lens);
 
+/// How light comes from the eye to any point of the side entered.
+using ArrivalAt = std::function<optics::Arrival(const glm::dvec3& point_mm)>;
+
+/// At every vertex of `mesh`.
+[[nodiscard]] std::vector<optics::Arrival> arrivals_at(const tessellate::OpticArrays& mesh,
+                                                       const ArrivalAt& arrival);
+
 /// Without scene hits: depends on the positions of eye and lens alone.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
                                         const glm::dvec3& eye_mm);
-/// The same from a given side.
+/// The same from a given side, of light that comes to it in any way.
 [[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
-                                        const glm::dvec3& eye_mm, optics::LensSide entered);
-/// The same of light that comes to the vertices of that side by other optics, about as if from `eye_mm`.
-[[nodiscard]] LensRays refract_eye_rays(const optics::Optic& lens, const optics::LensTracer& tracer,
-                                        const glm::dvec3& eye_mm, optics::LensSide entered,
-                                        std::span<const optics::Arrival> arrivals);
+                                        optics::LensSide entered, const ArrivalAt& arrival);
+
+/// Gives vertices beside those whose light passes the ray that their neighbours' differentials ask for, the
+/// nearest most; what vertices had been given so before is forgotten. `rings`: as many times, each time from
+/// those that have one by then.
+void continue_beyond_border(const tessellate::OpticArrays& mesh, std::vector<optics::VertexHit>& hits,
+                            int rings);
+/// So many in a mesh as tessellated, where a corner may have none but continued neighbours. In a refined one
+/// a triangle that light passes has a corner where it does.
+inline constexpr int kRingsOfTessellated = 2, kRingsOfRefined = 1;
+
+/// LensRays::open of each vertex.
+[[nodiscard]] std::vector<float> ways_through(const tessellate::OpticArrays& mesh,
+                                              std::span<const optics::VertexHit> hits);
+
+/// Where, on the flat way from a vertex whose light passes to one whose light does not, it stops passing.
+struct LensBorder {
+  double passed = 0, blocked = 1;  ///< shares of the way between which that is
+  optics::LensPath path;           ///< that of `passed`; `end` is missed where the vertex itself is meant
+};
+/// By bisection, until `passed` and `blocked` are kBorderShare apart.
+[[nodiscard]] LensBorder find_border(const optics::LensTracer& tracer, optics::LensSide entered,
+                                     const optics::LensIndices& indices, const ArrivalAt& arrival,
+                                     const glm::dvec3& passing_mm, const glm::dvec3& blocked_mm);
+inline constexpr double kBorderShare = 1.0 / 16;
+inline constexpr std::size_t kBorderPaths = 4;  ///< that find_border() traces
 
 /// Closes vertices whose ray, continued beyond the border, has no place in the map. `patch`: per vertex,
 /// which of `views` is its map's; empty: the first.

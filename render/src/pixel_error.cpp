@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "render/src/turn_steps.h"
+
 namespace catoptra::render {
 namespace {
 
@@ -87,7 +89,7 @@ double angle(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 std::optional<double> screen_error(const Frame& reference, const Frame& frame, std::size_t i,
-                                   const glm::dvec3& shown) {
+                                   const glm::dvec3& shown, double least_turn_rad) {
   const int x = int(i % std::size_t(reference.width)), y = int(i / std::size_t(reference.width));
   const auto stride = std::size_t(reference.width);
   const auto dx = difference(reference, reference.direction, i, x, reference.width, 1);
@@ -101,6 +103,7 @@ std::optional<double> screen_error(const Frame& reference, const Frame& frame, s
   const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, d) * d; };
   const glm::dvec3 jx = across(*dx + nearness * *sx), jy = across(*dy + nearness * *sy),
                    e = across(shown - d);
+  if (least_turn_rad > 0) return steps_to_turn(jx, jy, e, least_turn_rad);
   const double a = glm::dot(jx, jx), b = glm::dot(jx, jy), c = glm::dot(jy, jy), determinant = a * c - b * b;
   if (!(determinant > 1e-8 * (a + c) * (a + c))) return std::nullopt;
   const double u = glm::dot(jx, e), v = glm::dot(jy, e);

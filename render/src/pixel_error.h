@@ -33,9 +33,10 @@ inline constexpr double kArcminPerRad = 60 * 180 / std::numbers::pi;
 /// How far, in pixels, from pixel `i` the exact picture shows what `frame` shows at `i`: the step p with
 ///   (I - d d^T) (S + S' p + s (d + d' p) - Q) = 0,
 /// S and d the exact ray, ' their derivative by pixel, Q the point shown at distance s (for a direction s is
-/// infinite). Nullopt on a caustic, where the derivative is singular, and where it cannot be taken.
+/// infinite). Nullopt where the derivative cannot be taken. Turns per pixel below `least_turn_rad` count as
+/// that; 0: nullopt on caustics, where the derivative is singular.
 [[nodiscard]] std::optional<double> screen_error(const Frame& reference, const Frame& frame, std::size_t i,
-                                                 const glm::dvec3& shown);
+                                                 const glm::dvec3& shown, double least_turn_rad = 0);
 
 /// Whether `frame` shows at pixel `i`, in the direction `shown`, the surface that the exact ray meets: what
 /// it shows lies in that surface's tangent plane, which the neighbours' exact points tell, to an arcminute or

@@ -1,6 +1,5 @@
 #include "render/src/pvrr_optic.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -23,8 +22,6 @@ using optics::VertexHit;
 // of a common motion of eye and optic by rounding, in scenes up to 100 km. Rays then are off by 1e-8 rad, a
 // sixth of the step of the floats in which map coordinates are drawn.
 constexpr double kEyeRounding = 1e-8;
-
-constexpr std::size_t kVerticesPerTask = 64;
 
 // As in pvrr_optic.frag.glsl and pvrr_lens.frag.glsl.
 constexpr GLint kMapShift = 7, kMapRayOrigin = 8, kMapRayDirection = 9, kMapPlace = 10;
@@ -71,7 +68,6 @@ void PvrrOptic::optic_changed() {
   tree_.forget();
   set_patches({});
   lens_ = {};
-  refined_lens_ = {};
   tracer_.reset();
   traced_from_.reset();
 }
@@ -124,7 +120,7 @@ void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   light_.reset();
   const auto arrival = [this](const glm::dvec3& point) { return arrival_at(point); };
   if (optic_.kind == OpticKind::mirror) {
-    const std::vector<optics::Arrival> arriving = arrivals(optic_.mesh);
+    const std::vector<optics::Arrival> arriving = arrivals_at(optic_.mesh, arrival);
     mirror_rays_.clear();
     for (std::size_t i = 0; i < arriving.size(); ++i)
       mirror_rays_.push_back(optics::reflect_vertex(optic_.mesh.vertices[i], optic_, arriving[i]));
@@ -134,8 +130,7 @@ void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   } else {
     if (!tracer_) tracer_ = std::make_unique<optics::LensTracer>(optic_);
     const optics::LensSide entered = optics::side_towards(optic_, eye_mm);
-    lens_paths_ =
-        refract_eye_rays(optic_, *tracer_, eye_mm, entered, arrivals(*optics::side_of(optic_, entered).mesh));
+    lens_paths_ = refract_eye_rays(optic_, *tracer_, entered, arrival);
     ray_count_ = lens_paths_.passed();
     light_.emplace(optic_, entered, tracer_.get(),
                    optics::lens_indices(optic_, lens_paths_.samples[0].wavelength_nm), lens_paths_.hits[0],
@@ -150,19 +145,9 @@ optics::Arrival PvrrOptic::arrival_at(const glm::dvec3& own_point_mm) const {
     if (const auto light = above_->light_to(placement_.point(own_point_mm))) {
       const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
       return {placement_.own_point(light->origin_mm), placement_.own_direction(light->direction),
-              to_own * light->turn * to_world};
+              to_own * light->turn * to_world, light->beyond_mm};
     }
   return optics::arrival_from_eye(*traced_from_, own_point_mm);
-}
-
-std::vector<optics::Arrival> PvrrOptic::arrivals(const tessellate::OpticArrays& mesh) const {
-  std::vector<optics::Arrival> arrivals(mesh.vertices.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, arrivals.size(), kVerticesPerTask),
-                    [&](const auto& some) {
-                      for (std::size_t i = some.begin(); i < some.end(); ++i)
-                        arrivals[i] = arrival_at(mesh.vertices[i].position_mm);
-                    });
-  return arrivals;
 }
 
 std::optional<optics::Arrival> PvrrOptic::light_to(const glm::dvec3& point_mm) const {
@@ -171,7 +156,7 @@ std::optional<optics::Arrival> PvrrOptic::light_to(const glm::dvec3& point_mm) c
   if (!light) return std::nullopt;
   const glm::dmat3 &to_world = placement_.rotation, to_own = glm::transpose(to_world);
   return optics::Arrival{placement_.point(light->origin_mm), placement_.direction(light->direction),
-                         to_world * light->turn * to_own};
+                         to_world * light->turn * to_own, light->beyond_mm};
 }
 
 void PvrrOptic::find_hits() {

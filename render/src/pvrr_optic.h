@@ -111,7 +111,6 @@ class PvrrOptic {
  private:
   [[nodiscard]] bool rays_hold(const glm::dvec3& eye_mm) const;
   [[nodiscard]] optics::Arrival arrival_at(const glm::dvec3& own_point_mm) const;
-  [[nodiscard]] std::vector<optics::Arrival> arrivals(const tessellate::OpticArrays& mesh) const;
   void trace(const glm::dvec3& eye_mm);
   void find_hits();
   [[nodiscard]] std::vector<optics::VertexHit> with_hits(std::vector<optics::VertexHit> rays) const;
@@ -124,6 +123,8 @@ class PvrrOptic {
   void set_map_sizes(const RasterView& camera);
   void refine(const RasterView& camera, bool remember);
   void refine_lens(bool remember);
+  [[nodiscard]] std::vector<std::vector<optics::VertexHit>> further_wavelengths(
+      const tessellate::OpticArrays& mesh, std::size_t first);
   void show();
   [[nodiscard]] std::vector<TexelRect> unseen_in(std::size_t patch) const;
   [[nodiscard]] std::vector<std::vector<glm::dvec3>> lens_coordinates() const;
@@ -174,9 +175,10 @@ class PvrrOptic {
   bool refined_ = false;
   std::unique_ptr<RasterOptic> own_surface_;  ///< null where the scene's own is drawn
   std::size_t vertex_count_ = 0;              ///< of the mesh drawn, those that patches share counted once
-  optics::Optic refined_lens_;                ///< the lens with the refined mesh
   std::optional<glm::dvec3> refined_from_;    ///< the eye that refined_paths_ belong to
-  LensRays refined_paths_, refined_rays_;     ///< without and with what they meet
+  /// Of a lens, at all wavelengths but the reference, of the vertices that refinement has added.
+  std::vector<std::vector<optics::VertexHit>> refined_paths_;
+  LensRays refined_rays_;  ///< of all vertices, with what they meet
 
   std::optional<RasterView> fitted_for_;  ///< the camera, in the optic's frame, that what follows belongs to
   double texels_before_ = 1;

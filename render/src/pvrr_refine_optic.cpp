@@ -1,9 +1,11 @@
 // PvrrOptic: from the mesh as tessellated to the refined one.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "render/src/patch_coordinates.h"
 #include "render/src/pvrr_optic.h"
 
 namespace catoptra::render {
@@ -16,20 +18,24 @@ using optics::VertexHit;
 // between those that it was made for.
 constexpr double kMostWider = 0.25;
 constexpr double kMargin = 0.01;
+constexpr std::size_t kVerticesPerTask = 64;
 
-/// Makes room in `view` for what vertices from `first` on show that belong to `patch`, and moves the
-/// `coordinates` of that patch along. `patch_of` empty: all belong to it.
+/// Makes room in `view` for what vertices from `first` on and rays at the `border` show that belong to
+/// `patch`, and moves the `coordinates` of that patch along. `patch_of` empty: all belong to it.
 void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size_t first,
            std::span<const std::uint32_t> patch_of, std::uint32_t patch,
-           std::vector<glm::dvec3>& coordinates) {
+           std::span<const PvrrRefinement::BorderRay> border, std::vector<glm::dvec3>& coordinates) {
   const auto belongs = [&](std::size_t i) { return patch_of.empty() || patch_of[i] == patch; };
   glm::dvec2 low(0), high(1);
-  for (std::size_t i = first; i < hits.size(); ++i) {
-    if (!belongs(i) || !passes(hits[i])) continue;
-    const glm::dvec2 at = glm::dvec2(coordinates[i]) / coordinates[i].z;
+  const auto make_room = [&](const glm::dvec3& homogeneous) {
+    const glm::dvec2 at = glm::dvec2(homogeneous) / homogeneous.z;
     low = glm::min(low, at - kMargin);
     high = glm::max(high, at + kMargin);
-  }
+  };
+  for (std::size_t i = first; i < hits.size(); ++i)
+    if (belongs(i) && passes(hits[i])) make_room(coordinates[i]);
+  for (const auto& ray : border)
+    if (ray.patch == patch) make_room(ray.coordinates);
   if (view.fov_clamped || (low == glm::dvec2(0) && high == glm::dvec2(1))) return;
   low = glm::max(low, glm::dvec2(-kMostWider));
   high = glm::min(high, glm::dvec2(1 + kMostWider));
@@ -54,10 +60,11 @@ void widen(optics::VirtualView& view, std::span<const VertexHit> hits, std::size
 void PvrrOptic::refine(const RasterView& camera, bool remember) {
   const bool lens = optic_.kind == OpticKind::lens;
   const std::span<const VertexHit> hits = lens ? lens_rays_.hits[0] : mirror_hits_;
-  refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits, cut_coordinates_, views_,
-                      patches_.patch, *traced_from_,
+  refinement_.refine({optic_, cut_mesh(), lens_rays_.entered, tracer_.get(), hits,
+                      lens ? std::span<const float>(lens_rays_.open[0]) : std::span<const float>(),
+                      cut_coordinates_, views_, patches_.patch, *traced_from_,
                       [this](const glm::dvec3& point) { return arrival_at(point); }, camera,
-                      scene_.settings.max_error_px, remember,
+                      scene_.settings.max_error_px * texels_before_, remember,
                       [this](std::vector<VertexHit> rays) { return with_hits(std::move(rays)); }});
   refinement_rays_ = refinement_.traced_rays();
   scene_rays_ += refinement_.scene_rays();
@@ -70,28 +77,54 @@ void PvrrOptic::refine(const RasterView& camera, bool remember) {
   if (lens) refine_lens(remember);
   traced_rays_ += refinement_rays_;
   for (std::uint32_t patch = 0; patch < views_.size(); ++patch)
-    widen(views_[patch], PvrrOptic::hits(), cut_coordinates_.size(), patches_of_seen(), patch, coordinates_);
+    widen(views_[patch], PvrrOptic::hits(), cut_coordinates_.size(), patches_of_seen(), patch,
+          refinement_.border_rays(), coordinates_);
 }
 
 void PvrrOptic::refine_lens(bool remember) {
+  const tessellate::OpticArrays& mesh = refinement_.mesh();
   if (!remember || refinement_.mesh_changed() || refined_from_ != traced_from_) {
-    if (refined_lens_.faces.empty()) refined_lens_ = optic_;
-    const bool front = lens_rays_.entered == optics::LensSide::front;
-    (front ? refined_lens_.mesh : refined_lens_.back.mesh) = refinement_.mesh();
-    refined_paths_ = refract_eye_rays(refined_lens_, *tracer_, *traced_from_, lens_rays_.entered,
-                                      arrivals(refinement_.mesh()));
+    refined_paths_ = further_wavelengths(mesh, cut_coordinates_.size());
     refined_from_ = traced_from_;
-    refinement_rays_ += refined_paths_.passed();
   }
-  refined_rays_ = refined_paths_;
-  for (auto& of_sample : refined_rays_.hits) {
-    scene_rays_ += of_sample.size();
-    of_sample = with_hits(std::move(of_sample));
-    close_off_maps(of_sample, patches_of_seen(), views_);
+  refined_rays_ = {lens_rays_.entered, lens_rays_.samples, {}, {}, {}};
+  refined_rays_.hits.emplace_back(refinement_.hits().begin(), refinement_.hits().end());
+  refined_rays_.open.emplace_back(refinement_.open().begin(), refinement_.open().end());
+  for (std::size_t k = 1; k < lens_rays_.hits.size(); ++k) {
+    std::vector<VertexHit> hits = lens_rays_.hits[k];
+    hits.insert(hits.end(), refined_paths_[k - 1].begin(), refined_paths_[k - 1].end());
+    continue_beyond_border(mesh, hits, kRingsOfRefined);
+    refined_rays_.open.push_back(ways_through(mesh, hits));
+    // The others have theirs.
+    std::vector<std::uint32_t> without;
+    for (std::uint32_t i = 0; i < hits.size(); ++i)
+      if (hits[i].faces_eye && (i >= cut_coordinates_.size() || !passes(hits[i]))) without.push_back(i);
+    scene_rays_ += without.size();
+    const auto found = with_hits(gathered(std::span<const VertexHit>(hits), without));
+    for (std::size_t i = 0; i < found.size(); ++i) hits[without[i]] = found[i];
+    close_off_maps(hits, patches_of_seen(), views_);
+    refined_rays_.hits.push_back(std::move(hits));
   }
-  // What the refinement has not followed shows what lies beside it: beyond the border of what passes.
-  const auto q = coordinates_;
-  coordinates_ = patch_coordinates_like(q, refined_rays_.hits[0], patches_of_seen(), views_);
+}
+
+std::vector<std::vector<VertexHit>> PvrrOptic::further_wavelengths(const tessellate::OpticArrays& mesh,
+                                                                   std::size_t first) {
+  std::vector<std::vector<VertexHit>> of_samples;
+  const std::size_t count = mesh.vertices.size() - first;
+  for (std::size_t k = 1; k < lens_rays_.samples.size(); ++k) {
+    const auto indices = optics::lens_indices(optic_, lens_rays_.samples[k].wavelength_nm);
+    std::vector<VertexHit> hits(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kVerticesPerTask), [&](const auto& some) {
+      for (std::size_t i = some.begin(); i < some.end(); ++i) {
+        const auto& vertex = mesh.vertices[first + i];
+        hits[i] = optics::refract_vertex(vertex, optic_, *tracer_, lens_rays_.entered, indices,
+                                         arrival_at(vertex.position_mm));
+      }
+    });
+    refinement_rays_ += count;
+    of_samples.push_back(std::move(hits));
+  }
+  return of_samples;
 }
 
 }  // namespace catoptra::render

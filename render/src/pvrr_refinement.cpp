@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/mat2x2.hpp>
-#include <glm/matrix.hpp>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include "render/src/lens_rays.h"
 #include "render/src/patch_coordinates.h"
 #include "render/src/patch_mesh.h"
+#include "render/src/refinement_measure.h"
 
 namespace catoptra::render {
 namespace {
@@ -28,90 +27,13 @@ constexpr double kSplit = 0.75;
 constexpr double kKeep = 0.5;
 // Each level divides a smooth error by four: this is a factor of 1e6.
 constexpr int kMostLevels = 10;
-// Edges that lie outside the picture by this share of its size on one side are left alone.
-constexpr double kOffScreen = 0.1;
-// Where an optic magnifies, against the direct view, by more than this, what it shows between two pixels is
-// less than the error can be told from: near a caustic one pixel shows (nearly) one direction only.
-constexpr double kMostMagnification = 20;
+// The part of the error that is odd about the middle of an edge vanishes there; it is found from the rays'
+// differentials, so far from the ends, as a share of the edge.
+constexpr double kBesideEnd = 1.0 / 64;
+// It is largest a quarter of the way from either end or nearly so, where the even part is at 3/4: x (1 - x)
+// (x - 1/2) at x = 1/4.
+constexpr double kCubicShare = 3.0 / 64;
 constexpr std::size_t kEdgesPerTask = 64;
-
-struct Place {
-  glm::dvec3 right, up;  ///< unit, across the eye's ray
-  glm::dmat2 pixels;     ///< pixels per mm of movement along them
-};
-
-/// How the picture moves with a point at `at_mm`.
-Place place_of(const RasterView& camera, const glm::dvec3& at_mm) {
-  const glm::dvec3 ray = glm::normalize(at_mm - camera.origin_mm);
-  const glm::dvec3 other = std::abs(ray.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  Place place;
-  place.right = glm::normalize(glm::cross(ray, other));
-  place.up = glm::cross(place.right, ray);
-  const double step = 1e-4 * glm::distance(at_mm, camera.origin_mm);
-  const auto change = [&](const glm::dvec3& along) {
-    return glm::dvec2(camera.pixel(at_mm + step * along) - camera.pixel(at_mm - step * along)) / (2 * step);
-  };
-  place.pixels = glm::dmat2(change(place.right), change(place.up));
-  return place;
-}
-
-bool off_screen(const RasterView& camera, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec2 margin = kOffScreen * glm::dvec2(camera.size);
-  return (a.z <= 0 || b.z <= 0) || std::max(a.x, b.x) < -margin.x ||
-         std::min(a.x, b.x) > camera.size.x + margin.x || std::max(a.y, b.y) < -margin.y ||
-         std::min(a.y, b.y) > camera.size.y + margin.y;
-}
-
-/// 1 / distance from the optic to what the ray meets; 0: the sky.
-double nearness(const VertexHit& hit) {
-  return hit.scene_hit ? 1 / std::max(hit.scene_hit.t_mm, optics::kSelfHitDistance_mm) : 0;
-}
-
-/// The exact ray, to second order, of the eye's ray through `point_mm` of the flat edge, from that through
-/// the exact surface near it. It is given a hit as far away as the ends' hits are: not the scene's own, so
-/// that where the ends meet different things no step of depth passes for an error of interpolation.
-VertexHit ray_through(const VertexHit& middle, const glm::dvec3& offset_mm, double near) {
-  VertexHit ray = middle;
-  ray.surface_point_mm += middle.differential.point * offset_mm;
-  ray.direction = glm::normalize(middle.direction + middle.differential.direction * offset_mm);
-  ray.scene_hit = {};
-  if (!(near > 0)) return ray;
-  ray.scene_hit.t_mm = 1 / near;
-  ray.scene_hit.object = 0;
-  ray.hit_point_mm = ray.surface_point_mm + ray.direction / near;
-  return ray;
-}
-
-/// Angle, as a vector across the ray, between the exact ray and what is shown instead, from where the map
-/// shows it: `off` in map coordinates.
-glm::dvec3 angle_of(const optics::VirtualView& view, const VertexHit& ray, double near, glm::dvec2 off) {
-  const glm::dvec3 step =
-      off.x * (view.right_side - view.left) * view.right + off.y * (view.top - view.bottom) * view.up;
-  // Times the depth in the map, over the distance.
-  double scale = near;
-  if (view.projection == optics::MapProjection::perspective)
-    scale = near > 0 ? std::abs(glm::dot(ray.hit_point_mm - view.viewpoint_mm, view.direction)) * near
-                     : std::abs(glm::dot(ray.direction, view.direction));
-  const glm::dvec3 angle = scale * step;
-  return angle - glm::dot(angle, ray.direction) * ray.direction;
-}
-
-/// The step on the picture, in pixels, over which the exact rays turn by `angle`.
-double in_pixels(const Place& place, const VertexHit& ray, double near, double eye_distance_mm,
-                 const glm::dvec3& angle) {
-  const auto turn = [&](const glm::dvec3& along) {
-    const glm::dvec3 t = ray.differential.direction * along + near * (ray.differential.point * along);
-    return t - glm::dot(t, ray.direction) * ray.direction;
-  };
-  const glm::dvec3 jx = turn(place.right), jy = turn(place.up);
-  // Least squares, damped where the turn per mm is below that of the direct view over kMostMagnification.
-  const double least = 1 / (kMostMagnification * eye_distance_mm);
-  const double a = glm::dot(jx, jx) + least * least, b = glm::dot(jx, jy),
-               c = glm::dot(jy, jy) + least * least, determinant = a * c - b * b;
-  const double u = glm::dot(jx, angle), v = glm::dot(jy, angle);
-  const glm::dvec2 moved_mm((c * u - b * v) / determinant, (a * v - b * u) / determinant);
-  return glm::length(place.pixels * moved_mm);
-}
 
 }  // namespace
 
@@ -123,6 +45,7 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
     mesh_.emplace(side.faces, request.mesh);
     side_ = request.entered;
     known_.clear();
+    borders_.clear();
     twin_.clear();
     was_split_.clear();
     nodes_.clear();
@@ -130,12 +53,17 @@ void PvrrRefinement::prepare(const RefinementRequest& request) {
     mesh_->restart();
   }
   if (!request.remember) was_split_.clear();
-  if (!request.remember || eye_mm_ != request.eye_mm) known_.clear();
+  if (!request.remember || eye_mm_ != request.eye_mm) {
+    known_.clear();
+    borders_.clear();
+  }
   eye_mm_ = request.eye_mm;
   hits_.assign(request.hits.begin(), request.hits.end());
   coordinates_.assign(request.coordinates.begin(), request.coordinates.end());
   patch_.assign(request.patch.begin(), request.patch.end());
   patch_.resize(hits_.size(), 0);
+  open_.assign(request.open.begin(), request.open.end());
+  border_coordinates_.clear();
   traced_rays_ = scene_rays_ = 0;
   error_left_px_ = 0;
 }
@@ -150,8 +78,10 @@ void PvrrRefinement::refine(const RefinementRequest& request) {
     const auto edges = mesh_->new_edges();
     for (std::size_t i = 0; i < edges.size(); ++i)
       if (wanted[i]) split_now[edges[i].node] = 1;
+    if (is_lens(request)) trace_middles(request, whole_groups(wanted));
     mesh_->split(wanted);
     add_vertices(request);
+    if (is_lens(request)) continue_rays(request);
   }
   was_split_ = std::move(split_now);
   const auto nodes = mesh_->nodes();
@@ -180,7 +110,7 @@ void PvrrRefinement::trace_middles(const RefinementRequest& request, std::span<c
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (asked[i] && !std::exchange(known_[twin_[edges[i].node]], char(1))) missing.push_back(i);
   traced_rays_ += missing.size();
-  const bool lens = request.optic.kind == optics::OpticKind::lens;
+  const bool lens = is_lens(request);
   const auto indices = lens ? optics::lens_indices(request.optic, samples_of(request.optic)[0].wavelength_nm)
                             : optics::LensIndices();
   // Twins are traced once, so that no two tasks write the same entry.
@@ -201,45 +131,56 @@ std::vector<double> PvrrRefinement::edge_errors(const RefinementRequest& request
   const auto& vertices = mesh_->mesh().vertices;
   std::vector<glm::dvec3> pixels(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) pixels[i] = request.camera.pixel(vertices[i].position_mm);
+  const std::vector<EdgePlace> places = edge_places(request, pixels);
   std::vector<char> asked(edges.size(), 0);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i].ends;
-    asked[i] = passes(hits_[a]) && passes(hits_[b]) && !off_screen(request.camera, pixels[a], pixels[b]);
-  }
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    asked[i] = places[i] == EdgePlace::inside || places[i] == EdgePlace::beyond;
   trace_middles(request, asked);
-
-  std::vector<glm::dvec3> shown(edges.size(), glm::dvec3(0.5, 0.5, 1));
-  std::vector<VertexHit> rays(edges.size());
-  std::vector<double> near(edges.size(), 0);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i].ends;
-    asked[i] = asked[i] && passes(rays_[twin_[edges[i].node]]);
-    if (!asked[i]) continue;
-    const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
-    near[i] = 0.5 * (nearness(hits_[a]) + nearness(hits_[b]));
-    rays[i] = ray_through(rays_[twin_[edges[i].node]], point - mesh_->middle(edges[i]).position_mm, near[i]);
-    shown[i] = 0.5 * (coordinates_[a] + coordinates_[b]);
-  }
-  std::vector<std::uint32_t> patch(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) patch[i] = patch_[edges[i].ends[0]];
-  const auto exact = patch_coordinates_like(shown, rays, patch, request.views);
 
   std::vector<double> errors(edges.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), kEdgesPerTask), [&](const auto& some) {
     for (std::size_t i = some.begin(); i < some.end(); ++i) {
-      if (!asked[i]) continue;
+      if (places[i] != EdgePlace::inside) continue;
       const auto [a, b] = edges[i].ends;
-      const glm::dvec3 point = 0.5 * (vertices[a].position_mm + vertices[b].position_mm);
-      const glm::dvec2 off = glm::dvec2(shown[i]) / shown[i].z - glm::dvec2(exact[i]) / exact[i].z;
-      const double error =
-          in_pixels(place_of(request.camera, point), rays[i], near[i], glm::distance(point, eye_mm_),
-                    angle_of(request.views[patch[i]], rays[i], near[i], off));
+      const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b])),
+                   error = inside_error_px(request, edges[i]);
       // No error is larger than the edge: it is what an edge next to a caustic or the map's horizon gives.
-      const double length_px = glm::distance(glm::dvec2(pixels[a]), glm::dvec2(pixels[b]));
       errors[i] = std::isfinite(error) ? std::min(error, length_px) : length_px;
     }
   });
+  if (is_lens(request)) add_border_errors(request, places, pixels, errors);
   return errors;
+}
+
+double PvrrRefinement::inside_error_px(const RefinementRequest& request, const EdgeMiddle& edge) const {
+  const VertexHit& middle = rays_[twin_[edge.node]];
+  // Between two ends where light passes a lens: something stands in its way.
+  if (!passes(middle)) return is_lens(request) ? std::numeric_limits<double>::infinity() : 0;
+  const auto [a, b] = edge.ends;
+  const auto& vertices = mesh_->mesh().vertices;
+  const glm::dvec3 from = vertices[a].position_mm, step = vertices[b].position_mm - from,
+                   point = from + 0.5 * step;
+  // Farther beyond what the optic above lets pass than the edge is long, nobody sees what it shows.
+  if (std::min({hits_[a].beyond_mm, hits_[b].beyond_mm, middle.beyond_mm}) > glm::length(step)) return 0;
+  const optics::VirtualView& view = request.views[patch_[a]];
+  const auto near_at = [&](double share) {
+    return (1 - share) * nearness(hits_[a]) + share * nearness(hits_[b]);
+  };
+  const auto off = [&](double share, const VertexHit& known, const glm::dvec3& known_mm) {
+    return map_off(view, (1 - share) * coordinates_[a] + share * coordinates_[b],
+                   ray_through(known, from + share * step - known_mm, near_at(share)));
+  };
+  const glm::dvec2 in_middle = off(0.5, middle, mesh_->middle(edge).position_mm);
+  // The error x (1 - x) (4 m + c (x - 1/2)) has c as the sum of its slopes at both ends, less its sign.
+  const glm::dvec2 cubic =
+      (off(1 - kBesideEnd, hits_[b], vertices[b].position_mm) - off(kBesideEnd, hits_[a], from)) / kBesideEnd;
+  const double near = near_at(0.5);
+  const VertexHit ray = ray_through(middle, point - mesh_->middle(edge).position_mm, near);
+  const PicturePlace place = picture_place(request.camera, point);
+  const auto in_px = [&](const glm::dvec2& off_map) {
+    return map_error_px(place, view, ray, near, glm::distance(point, eye_mm_), off_map);
+  };
+  return std::max(in_px(in_middle), in_px(0.75 * in_middle) + in_px(kCubicShare * cubic));
 }
 
 std::vector<char> PvrrRefinement::choose(const RefinementRequest& request, std::span<const double> errors) {

@@ -6,11 +6,13 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "optics/lens_path.h"
 #include "optics/vertex_hits.h"
 #include "optics/virtual_view.h"
+#include "render/src/lens_rays.h"
 #include "render/src/raster_view.h"
 #include "tessellate/refined_mesh.h"
 
@@ -26,11 +28,12 @@ struct RefinementRequest {
   optics::LensSide entered = optics::LensSide::front;  ///< of a lens
   const optics::LensTracer* tracer = nullptr;          ///< of a lens
   std::span<const optics::VertexHit> hits;             ///< of a lens at the reference wavelength
+  std::span<const float> open;                         ///< of a lens: LensRays::open at it
   std::span<const glm::dvec3> coordinates;             ///< homogeneous map coordinates
   std::span<const optics::VirtualView> views;          ///< per patch
   std::span<const std::uint32_t> patch;                ///< per vertex; empty: all belong to the first
   glm::dvec3 eye_mm{0};  ///< where the rays were traced from: the camera's place but for rounding
-  std::function<optics::Arrival(const glm::dvec3& point_mm)> arrival;  ///< how light comes from there
+  ArrivalAt arrival;     ///< how light comes from there
   const RasterView& camera;
   double max_error_px = 0.5;
   bool remember =
@@ -54,19 +57,46 @@ class PvrrRefinement {
   [[nodiscard]] std::span<const optics::VertexHit> hits() const { return hits_; }
   [[nodiscard]] std::span<const glm::dvec3> coordinates() const { return coordinates_; }
   [[nodiscard]] std::span<const std::uint32_t> patch() const { return patch_; }
+  /// Of a lens: LensRays::open at the reference wavelength.
+  [[nodiscard]] std::span<const float> open() const { return open_; }
+  /// Of a lens: homogeneous map coordinates, each in the map of `patch`, of exact rays close to the border of
+  /// what light passes, for which there are no vertices.
+  struct BorderRay {
+    std::uint32_t patch = 0;
+    glm::dvec3 coordinates{0};
+  };
+  [[nodiscard]] std::span<const BorderRay> border_rays() const { return border_coordinates_; }
 
-  /// What the last refine() has cost: rays reflected or refracted at the middles of edges, rays sent into the
-  /// scene from those that became vertices.
+  /// What the last refine() has cost: rays reflected or refracted at the middles of edges and in search of
+  /// borders, rays sent into the scene from those that became vertices.
   [[nodiscard]] std::size_t traced_rays() const { return traced_rays_; }
   [[nodiscard]] std::size_t scene_rays() const { return scene_rays_; }
   /// The largest error of an edge that had to be left whole to keep kMostRefinedVertices; 0: of none.
   [[nodiscard]] double error_left_px() const { return error_left_px_; }
 
  private:
+  /// Where the ends of an edge lie: both where light passes (or a mirror reflects); one; neither, but each in
+  /// a triangle with a corner where it does; anywhere else, or off the picture.
+  enum class EdgePlace : std::uint8_t { inside, border, beyond, elsewhere };
+
+  [[nodiscard]] static bool is_lens(const RefinementRequest& request) {
+    return request.optic.kind == optics::OpticKind::lens;
+  }
   void prepare(const RefinementRequest& request);
   [[nodiscard]] std::vector<double> edge_errors(const RefinementRequest& request);
+  [[nodiscard]] double inside_error_px(const RefinementRequest& request,
+                                       const tessellate::EdgeMiddle& edge) const;
   void find_twins();
   void trace_middles(const RefinementRequest& request, std::span<const char> asked);
+  [[nodiscard]] std::vector<EdgePlace> edge_places(const RefinementRequest& request,
+                                                   std::span<const glm::dvec3> pixels) const;
+  void add_border_errors(const RefinementRequest& request, std::span<const EdgePlace> places,
+                         std::span<const glm::dvec3> pixels, std::vector<double>& errors);
+  void find_borders(const RefinementRequest& request, std::span<const EdgePlace> places);
+  [[nodiscard]] double border_error_px(const RefinementRequest& request, const tessellate::EdgeMiddle& edge,
+                                       double length_px);
+  [[nodiscard]] std::vector<char> whole_groups(std::span<const char> wanted) const;
+  void continue_rays(const RefinementRequest& request);
   [[nodiscard]] std::vector<char> choose(const RefinementRequest& request, std::span<const double> errors);
   void keep_to_limit(std::vector<std::size_t>& chosen, std::span<const double> errors);
   void add_vertices(const RefinementRequest& request);
@@ -83,7 +113,12 @@ class PvrrRefinement {
   /// middle, and rays_ and known_ are those of that node.
   std::vector<std::uint32_t> twin_;
 
+  /// By node, of edges across the border of what light passes, from the end where it does; for this eye.
+  std::unordered_map<std::uint32_t, LensBorder> borders_;
+
   std::vector<optics::VertexHit> hits_;
+  std::vector<float> open_;
+  std::vector<BorderRay> border_coordinates_;
   std::vector<glm::dvec3> coordinates_;
   std::vector<std::uint32_t> patch_;
   std::size_t traced_rays_ = 0, scene_rays_ = 0;

@@ -66,19 +66,40 @@ TEST_P(RefinementKeepsLimit, EverywhereInMirrorsOfAnyCurvature) {
 INSTANTIATE_TEST_SUITE_P(Radii, RefinementKeepsLimit,
                          ::testing::Values(1200.0, 300.0, 200.0, -3000.0, -2000.0));
 
-// The median alone: edges to vertices through which no light passes are not split, and the ring along the
-// lens's border stays as coarse as it was.
-TEST(Refinement, LowersTheErrorInLenses) {
-  Scene scene = wall_behind_lens(60, 0.5, 3000);
-  scene.optics.push_back(lens_of(100, 200, 6, 60, 4));
-  const Outcome coarse = outcome(scene);
-  scene.settings.max_error_px = 0.1;
-  const Outcome refined = outcome(scene);
-  EXPECT_GT(coarse.error.screen_px.median, 0.4) << "the mesh as tessellated is to be too coarse";
-  EXPECT_LT(refined.error.screen_px.median, 0.1);
-  EXPECT_LT(refined.error.screen_px.p99, coarse.error.screen_px.p99);
-  EXPECT_GT(vertices_of(refined.picture), vertices_of(coarse.picture));
+struct LensCase {
+  const char* name;
+  double front, back, thickness, eye, fov;
+};
+
+void PrintTo(const LensCase& c, std::ostream* out) {
+  *out << c.name;
 }
+
+class RefinementOfLenses : public ::testing::TestWithParam<LensCase> {};
+
+// The border of what passes lies in every one of these pictures but the first. In the last but one the eye's
+// rays meet close to the wall, in the last one light is totally reflected all around.
+TEST_P(RefinementOfLenses, KeepsTheLimitUpToTheBorderOfWhatPasses) {
+  const LensCase& c = GetParam();
+  Scene scene = wall_behind_lens(c.eye, c.fov, 3000);
+  scene.optics.push_back(lens_of(c.front, c.back, c.thickness, 60, 6));
+  const Outcome coarse = outcome(scene);
+  scene.settings.max_error_px = 0.25;
+  const Outcome refined = outcome(scene);
+  EXPECT_GT(coarse.error.screen_px.p99, 0.5) << "the mesh as tessellated is to be too coarse";
+  EXPECT_LT(refined.error.screen_px.p99, 0.25) << vertices_of(refined.picture) << " vertices";
+  // An outline of some 700 pixels, at most a tenth of which fall to the other side of it.
+  EXPECT_LE(refined.error.outline_pixels, 70u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, RefinementOfLenses,
+                         ::testing::Values(LensCase{"Full", 100, 200, 6, 60, 0.5},
+                                           LensCase{"Concave", 400, 95.2, 2, 70, 1.0},
+                                           LensCase{"Convex", 95.2, 400, 10, 60, 1.2},
+                                           LensCase{"Far", 95.2, 400, 6, 760, 0.07},
+                                           LensCase{"RaysMeetAtTheWall", 156, -133, 7, 122, 0.64},
+                                           LensCase{"TotallyReflecting", -90, 90, 4, 60, 1.2}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Refinement, NeverSplitsAPlaneMirror) {
   Scene scene = wall_before(conic_mirror(0, 0, 170, 110, 2, 2));
