@@ -48,7 +48,9 @@ class PlanarOptic final : public StackOptic {
   void others_changed() override {}
   [[nodiscard]] bool faces_eye() const override { return has_map(kReflected) || has_map(kPassed); }
   [[nodiscard]] std::size_t patch_count() const override { return maps_.size(); }
-  [[nodiscard]] bool has_map(std::size_t map) const override { return maps_[map].turn.has_value(); }
+  [[nodiscard]] bool has_map(std::size_t map) const override {
+    return map < maps_.size() && maps_[map].turn.has_value();
+  }
   [[nodiscard]] RasterView map_camera(std::size_t map) const override { return maps_[map].camera; }
   [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const override;
   [[nodiscard]] double texels_per_pixel(std::size_t) const override { return texels_before_; }
