@@ -37,11 +37,11 @@ ProjectiveView mirrored(const ProjectiveView& view, const Plane& plane) {
 }
 
 ProjectiveView through(const ProjectiveView& view, const Plane& plane, const glm::dvec3& eye_mm) {
-  // On the plane n (q - eye') is the same everywhere, so that q - eye = (q - eye') + (eye' - eye) is a linear map
-  // of q - eye'.
+  // On the plane n (q - eye') is the same everywhere, so that q - eye = (q - eye') + (eye' - eye) is a linear
+  // map of q - eye'.
   const glm::dvec3 moved = eye_mm - view.eye_mm;
-  return {eye_mm, view.image * (glm::dmat3(1) +
-                                glm::outerProduct(moved, plane.normal / -plane.height_mm(eye_mm)))};
+  return {eye_mm,
+          view.image * (glm::dmat3(1) + glm::outerProduct(moved, plane.normal / -plane.height_mm(eye_mm)))};
 }
 
 std::optional<glm::dvec3> refracted_eye(const glm::dvec3& eye_mm, const glm::dvec3& at_mm, const Plane& plane,

@@ -12,8 +12,8 @@ namespace {
 
 // As in planar_optic.frag.glsl and raster_shown.glsl.
 constexpr GLint kReflectance = 3, kWorks = 4, kBackAlbedo = 5, kOpticId = 6, kSurfaceAlbedo = 7,
-                kReflectedGrid = 8, kPassedGrid = 9, kIndexRatio = 10, kTint = 11, kHasMap = 12, kPassedEye = 13,
-                kFog = 14, kFace = 15, kFogAlbedo = 20;
+                kReflectedGrid = 8, kPassedGrid = 9, kIndexRatio = 10, kTint = 11, kHasMap = 12,
+                kPassedEye = 13, kFog = 14, kFace = 15, kFogAlbedo = 20;
 constexpr GLuint kReflectedColor = 2, kReflectedPosition = 3, kReflectedDetail = 4, kPassedColor = 5,
                  kPassedDepth = 6, kPassedPosition = 8, kPassedDetail = 9;
 // Fog of translucency 1 leaves nothing at any distance.
@@ -75,8 +75,9 @@ void PlanarDraw::set_glass(const PlanarOptic& drawn, const RasterView& view, boo
   const optics::Plane& plane = drawn.plane();
   glUniform4f(kFace, float(plane.normal.x), float(plane.normal.y), float(plane.normal.z),
               float(-plane.height_mm(view.origin_mm)));
-  const double fog =
-      material.translucency < 1 ? std::max(kDensestFog, std::log1p(-material.translucency) / 1000) : kDensestFog;
+  const double fog = material.translucency < 1
+                         ? std::max(kDensestFog, std::log1p(-material.translucency) / 1000)
+                         : kDensestFog;
   glUniform2f(kFog, float(fog), float(drawn.near(PlanarOptic::kPassed)));
   const RasterTarget& target = drawn.target(PlanarOptic::kPassed);
   glBindTextureUnit(kPassedColor, target.color().id());

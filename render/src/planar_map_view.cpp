@@ -44,7 +44,8 @@ void keep_part(std::vector<Point>& polygon, const Value& value) {
 
 double twice_area(const PixelPolygon& polygon) {
   double sum = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    sum += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
   return sum;
 }
 
@@ -83,8 +84,8 @@ std::vector<glm::dvec3> convex_hull(std::span<const glm::dvec3> points, const gl
   for (const bool upper : {false, true}) {
     const std::size_t first = hull.size();
     for (const auto& p : sorted) {
-      while (hull.size() >= first + 2 && cross(hull.back().first - hull[hull.size() - 2].first,
-                                               p.first - hull.back().first) <= 0)
+      while (hull.size() >= first + 2 &&
+             cross(hull.back().first - hull[hull.size() - 2].first, p.first - hull.back().first) <= 0)
         hull.pop_back();
       hull.push_back(p);
     }
@@ -140,7 +141,8 @@ glm::dvec2 nearest_point(const PixelPolygon& polygon, glm::dvec2 place) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec2 a = polygon[i], along = polygon[(i + 1) % polygon.size()] - a;
     const double square = glm::dot(along, along);
-    const glm::dvec2 p = square > 0 ? a + std::clamp(glm::dot(place - a, along) / square, 0.0, 1.0) * along : a;
+    const glm::dvec2 p =
+        square > 0 ? a + std::clamp(glm::dot(place - a, along) / square, 0.0, 1.0) * along : a;
     if (glm::distance(p, place) < best) {
       best = glm::distance(p, place);
       nearest = p;
@@ -166,8 +168,8 @@ glm::dvec3 point_on_plane(const RasterView& view, const optics::Plane& plane, gl
   return view.origin_mm - plane.height_mm(view.origin_mm) / glm::dot(along, plane.normal) * along;
 }
 
-RasterView planar_map_view(const RasterView& above, const PlanarTurn& turn, const PixelRect& rect, double near,
-                           const optics::Plane& keep) {
+RasterView planar_map_view(const RasterView& above, const PlanarTurn& turn, const PixelRect& rect,
+                           double near, const optics::Plane& keep) {
   const optics::ProjectiveView seen{above.origin_mm, image_of(above)};
   RasterView map;
   optics::ProjectiveView by_way{turn.eye_mm, seen.image};
@@ -177,8 +179,8 @@ RasterView planar_map_view(const RasterView& above, const PlanarTurn& turn, cons
     // The reflection makes the axes left-handed; right becomes left.
     const glm::dmat3 axes = glm::transpose(above.rotation);
     const glm::dvec3& n = turn.plane.normal;
-    map.rotation = glm::transpose(glm::dmat3(-optics::reflect(axes[0], n), optics::reflect(axes[1], n),
-                                             optics::reflect(axes[2], n)));
+    map.rotation = glm::transpose(
+        glm::dmat3(-optics::reflect(axes[0], n), optics::reflect(axes[1], n), optics::reflect(axes[2], n)));
   } else if (turn.way == PlanarWay::refracted) {
     by_way = optics::through(seen, turn.plane, turn.eye_mm);
     map.rotation = axes_along(turn.ahead, above);

@@ -21,7 +21,8 @@ struct PixelRect {
 };
 
 /// The corners of the convex hull of points of a plane, in order.
-[[nodiscard]] std::vector<glm::dvec3> convex_hull(std::span<const glm::dvec3> points, const glm::dvec3& normal);
+[[nodiscard]] std::vector<glm::dvec3> convex_hull(std::span<const glm::dvec3> points,
+                                                  const glm::dvec3& normal);
 
 /// The part of a convex polygon that `view` sees: before its eye, within its picture and on the side of
 /// RasterView::keep. World positions; fewer than three: none.
@@ -46,17 +47,18 @@ struct PixelRect {
 enum class PlanarWay { reflected, refracted, displaced };
 struct PlanarTurn {
   PlanarWay way = PlanarWay::reflected;
-  optics::Plane plane;      ///< of the optic; reflected light: of the mirror, which rough faces tilt
-  glm::dvec3 eye_mm{0};     ///< refracted and displaced light: its eye
-  glm::dvec3 ahead{0};      ///< refracted light: unit axis of its camera
+  optics::Plane plane;   ///< of the optic; reflected light: of the mirror, which rough faces tilt
+  glm::dvec3 eye_mm{0};  ///< refracted and displaced light: its eye
+  glm::dvec3 ahead{0};   ///< refracted light: unit axis of its camera
 };
 
-/// The map of `turn` on the pixels `rect` of `above` (which has its sample offset): texel (x, y) shows what pixel
-/// rect.begin + (x, y) of `above` sees by way of the optic; of reflected light (width - 1 - x, y), so that the view
-/// stays right-handed. Stored depth is `near` / w, w being the clip w of `above` continued along the ray: it falls
-/// along every ray from the eye on, also after the map of the refracted picture, since that w grows with the
-/// distance from the new eye. `keep`: plane before which nothing is drawn, its normal towards what is.
-[[nodiscard]] RasterView planar_map_view(const RasterView& above, const PlanarTurn& turn, const PixelRect& rect,
-                                         double near, const optics::Plane& keep);
+/// The map of `turn` on the pixels `rect` of `above` (which has its sample offset): texel (x, y) shows what
+/// pixel rect.begin + (x, y) of `above` sees by way of the optic; of reflected light (width - 1 - x, y), so
+/// that the view stays right-handed. Stored depth is `near` / w, w being the clip w of `above` continued
+/// along the ray: it falls along every ray from the eye on, also after the map of the refracted picture,
+/// since that w grows with the distance from the new eye. `keep`: plane before which nothing is drawn, its
+/// normal towards what is.
+[[nodiscard]] RasterView planar_map_view(const RasterView& above, const PlanarTurn& turn,
+                                         const PixelRect& rect, double near, const optics::Plane& keep);
 
 }  // namespace catoptra::render

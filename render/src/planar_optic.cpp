@@ -12,7 +12,8 @@ namespace {
 
 using optics::OpticKind;
 
-// Light that is less than that share of what is seen gets no map: a quarter of a step of 8 bits at full white.
+// Light that is less than that share of what is seen gets no map: a quarter of a step of 8 bits at full
+// white.
 constexpr double kLeastShare = 1e-3;
 // What lies in the plane itself, as the wall on which a mirror hangs, is not seen in it: as for rays
 // (optics/vertex_hits.h), and what floats leave uncertain so far from the eye.
@@ -89,7 +90,8 @@ bool PlanarOptic::update(const RasterView& camera, const FrameOptions& options, 
   const double height = plane_.height_mm(camera.origin_mm);
   const bool front = height > 0, glass = optics::is_planar_glass(optic_);
   works_ = height != 0 && (glass ? front || !optic_.one_sided : front != optic_.flip || optic_.two_sided);
-  index_ratio_ = optic_.kind == OpticKind::refractor && !front ? 1 / optic_.material.ior : optic_.material.ior;
+  index_ratio_ =
+      optic_.kind == OpticKind::refractor && !front ? 1 / optic_.material.ior : optic_.material.ior;
   if (!front) plane_.normal = -plane_.normal;
   for (Map& map : maps_) map.turn.reset();
   if (!see(camera, sight)) return false;

@@ -1,5 +1,5 @@
-// One planar optic in mode pvrr (docs/decisions/0015): where it shows, the views of what it reflects and passes,
-// and their maps, kept while nothing changes them. No ray is traced.
+// One planar optic in mode pvrr (docs/decisions/0015): where it shows, the views of what it reflects and
+// passes, and their maps, kept while nothing changes them. No ray is traced.
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ struct PlanarSight {
   double texels_before = 1;         ///< texels per pixel of the picture in that view
   /// Convex part of that view which shows anything at all, in its pixel coordinates; empty: all of it.
   std::span<const glm::dvec2> aperture;
-  /// Whether what cannot be seen is looked for at all: facing alone, or also outlines in the view and aperture.
+  /// Whether what cannot be seen is looked for at all: facing alone, or also outlines in the view and
+  /// aperture.
   bool checks = true;
   glm::dvec2 tilt{0};  ///< of this sample, in standard deviations of a rough face
 };
@@ -37,8 +38,8 @@ class PlanarOptic final : public StackOptic {
   /// Keeps the references.
   PlanarOptic(const Scene& scene, std::size_t optic, RasterScene& raster);
 
-  /// `camera`: the view that shows the optic, in the world, without sample offset. Returns whether the optic may
-  /// be seen in it.
+  /// `camera`: the view that shows the optic, in the world, without sample offset. Returns whether the optic
+  /// may be seen in it.
   bool update(const RasterView& camera, const FrameOptions& options, const PlanarSight& sight);
 
   void optic_changed() override { map_changed(); }
@@ -58,21 +59,21 @@ class PlanarOptic final : public StackOptic {
   [[nodiscard]] OpticStats statistics() const override;
   [[nodiscard]] std::size_t map_texels() const override;
 
-  /// Whether the side towards the eye does what the optic is for; if not, a mirror is a plain body and glass is
-  /// not there.
+  /// Whether the side towards the eye does what the optic is for; if not, a mirror is a plain body and glass
+  /// is not there.
   [[nodiscard]] bool works() const { return works_; }
   /// The part of a map that shows anything: convex, in its pixel coordinates; empty: all of it.
   [[nodiscard]] const PixelPolygon& aperture(std::size_t map) const { return maps_[map].aperture; }
   /// The view of a map as `above`, with its sample offset, shows the optic.
   [[nodiscard]] RasterView map_view(std::size_t map, const RasterView& above) const;
 
-  /// Draws the maps as `above` needs them, unless they are there already; returns how many were drawn. `nested`:
-  /// per map, the optics that each shows by their own maps.
+  /// Draws the maps as `above` needs them, unless they are there already; returns how many were drawn.
+  /// `nested`: per map, the optics that each shows by their own maps.
   std::size_t draw_maps(const RasterView& above, bool geometry, Overlay* overlay,
                         std::span<const NestedOptics> nested);
 
-  /// For mode exact: what is seen of points of the scene in the mirror or through the pane, by the view of the last
-  /// draw. The skewed maps behind a refractor are left out.
+  /// For mode exact: what is seen of points of the scene in the mirror or through the pane, by the view of
+  /// the last draw. The skewed maps behind a refractor are left out.
   void copy_maps(MapColors& maps) const;
 
   // For PlanarDraw.
@@ -120,7 +121,8 @@ class PlanarOptic final : public StackOptic {
   [[nodiscard]] std::optional<PlanarTurn> passed_turn(const RasterView& camera) const;
   [[nodiscard]] optics::Plane keep_plane(const PlanarTurn& turn) const;
   [[nodiscard]] bool reflection_matters(const RasterView& camera) const;
-  void draw_map(Map& map, const RasterView& view, bool geometry, Overlay* overlay, const NestedOptics* nested);
+  void draw_map(Map& map, const RasterView& view, bool geometry, Overlay* overlay,
+                const NestedOptics* nested);
 
   const Scene& scene_;
   const optics::Optic& optic_;

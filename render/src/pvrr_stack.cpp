@@ -9,8 +9,8 @@
 namespace catoptra::render {
 namespace {
 
-// Optics that all see each other make a tree that grows with the power of the depth. Curved ones trace rays and
-// have maps of their own resolution; the maps of planar ones together show each pixel about once a level.
+// Optics that all see each other make a tree that grows with the power of the depth. Curved ones trace rays
+// and have maps of their own resolution; the maps of planar ones together show each pixel about once a level.
 constexpr std::size_t kMostCurved = 256, kMostPlanar = 4096;
 
 // Where the eye of a map of parallel rays is put: over an optic of 1 m they turn by less than 1e-6 rad.

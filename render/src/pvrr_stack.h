@@ -16,11 +16,11 @@
 namespace catoptra::render {
 
 /// One node for every optic of the scene, as the picture shows it; below a node, one for every other optic
-/// that a map of it shows (curved optics have one for each patch, planar ones one for reflected and one for passed
-/// light), down to RenderSettings::depth levels (at least 1). To a node's optic the view of the map above is what
-/// the camera is to those of the picture; a curved one is one patch. Below the last level mirrors are plain bodies
-/// of their reflectance, and lenses and glass are left out. An optic that sees itself directly (a deep concave
-/// mirror) is in none of its own maps; by way of another optic it is.
+/// that a map of it shows (curved optics have one for each patch, planar ones one for reflected and one for
+/// passed light), down to RenderSettings::depth levels (at least 1). To a node's optic the view of the map
+/// above is what the camera is to those of the picture; a curved one is one patch. Below the last level
+/// mirrors are plain bodies of their reflectance, and lenses and glass are left out. An optic that sees
+/// itself directly (a deep concave mirror) is in none of its own maps; by way of another optic it is.
 class PvrrStack {
  public:
   /// Keeps the references. `bounds`: of everything in the scene.
@@ -37,8 +37,8 @@ class PvrrStack {
   /// No deeper than `levels`.
   void update(const RasterView& camera, const FrameOptions& options, int levels);
 
-  /// All maps that have to be drawn, the deepest first, for the camera of the last update(). Overlays go into those
-  /// of the first level alone.
+  /// All maps that have to be drawn, the deepest first, for the camera of the last update(). Overlays go into
+  /// those of the first level alone.
   void draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay);
 
   /// Of the first level: optics as the picture shows them.

@@ -1,5 +1,5 @@
-// What the tree of maps (pvrr_stack.h) needs of an optic at one place in it: curved ones (pvrr_optic.h) send rays
-// through their vertices, planar ones (planar_optic.h) move the view.
+// What the tree of maps (pvrr_stack.h) needs of an optic at one place in it: curved ones (pvrr_optic.h) send
+// rays through their vertices, planar ones (planar_optic.h) move the view.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,8 @@ class StackOptic {
   /// Its maps are numbered from 0 on; some may not be there.
   [[nodiscard]] virtual std::size_t patch_count() const = 0;
   [[nodiscard]] virtual bool has_map(std::size_t patch) const = 0;
-  /// The view of a map, in the world and without sample offset, and the offset of its samples within its texels.
+  /// The view of a map, in the world and without sample offset, and the offset of its samples within its
+  /// texels.
   [[nodiscard]] virtual RasterView map_camera(std::size_t patch) const = 0;
   [[nodiscard]] virtual glm::dvec2 map_offset(glm::dvec2 offset_px) const = 0;
   [[nodiscard]] virtual double texels_per_pixel(std::size_t patch) const = 0;

@@ -21,14 +21,16 @@ const Plane kPlane{{30, -20, 0}, {0, 0, 1}};
 
 /// The eye before the plane by `distance_mm`, so that its ray to `at` has that angle of incidence.
 glm::dvec3 eye_at(const glm::dvec3& at, double angle_rad, double distance_mm) {
-  return at + distance_mm * glm::dvec3(std::sin(angle_rad) * 0.6, std::sin(angle_rad) * 0.8, std::cos(angle_rad));
+  return at +
+         distance_mm * glm::dvec3(std::sin(angle_rad) * 0.6, std::sin(angle_rad) * 0.8, std::cos(angle_rad));
 }
 
 TEST(MirroredView, ShowsAPointWhereItsMirrorImageIs) {
   const ProjectiveView view{{100, 50, 400}, glm::dmat3(1, 0.1, 0, -0.2, 2, 0.3, 0.1, 0, -1)};
   const ProjectiveView mirror = mirrored(view, kPlane);
   const glm::dvec3 point(70, -300, 250), image(70, -300, -250);
-  EXPECT_LT(glm::distance(mirror.image * (point - mirror.eye_mm), view.image * (image - view.eye_mm)), 1e-12 * 1e3);
+  EXPECT_LT(glm::distance(mirror.image * (point - mirror.eye_mm), view.image * (image - view.eye_mm)),
+            1e-12 * 1e3);
 }
 
 TEST(ViewThroughAPlane, KeepsEveryPointOfThePlaneWhereItIs) {
@@ -120,7 +122,8 @@ TEST(QuadToQuad, IsTheSolutionOfItsEquations) {
   }
 }
 
-// The paper's way, quadrilateral to quadrilateral after the refracted camera's projection, and ours, by the plane.
+// The paper's way, quadrilateral to quadrilateral after the refracted camera's projection, and ours, by the
+// plane.
 TEST(QuadToQuad, OfAFaceInTwoPicturesIsTheViewThroughItsPlane) {
   const ProjectiveView view{{100, 50, 400}, glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -1)};
   const glm::dvec3 eye = *refracted_eye(view.eye_mm, {120, -40, 0}, kPlane, 1 / 1.5);

@@ -1,4 +1,5 @@
-// Planar optics in mode pvrr: mirrors against unfolded paths, glass against rays that this test refracts itself.
+// Planar optics in mode pvrr: mirrors against unfolded paths, glass against rays that this test refracts
+// itself.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -34,8 +35,8 @@ Scene planar_scene(const std::vector<PlacedMirror>& mirrors, int depth, bool tur
 
 class HallOfMirrors : public ::testing::TestWithParam<std::tuple<int, bool>> {};
 
-// Nothing is resampled at any level: what is off is off by the rounding of floats, and by pixels whose centre lies on
-// an outline.
+// Nothing is resampled at any level: what is off is off by the rounding of floats, and by pixels whose centre
+// lies on an outline.
 TEST_P(HallOfMirrors, ShowsWhatUnfoldedPathsShow) {
   const auto [depth, turned] = GetParam();
   const auto mirrors = facing_mirrors();
@@ -51,8 +52,7 @@ TEST_P(HallOfMirrors, ShowsWhatUnfoldedPathsShow) {
   }
   EXPECT_EQ(result.stats.maps.size(), std::size_t(depth));
 }
-INSTANTIATE_TEST_SUITE_P(Depth, HallOfMirrors,
-                         ::testing::Combine(::testing::Range(1, 6), ::testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(Depth, HallOfMirrors, ::testing::Combine(::testing::Range(1, 6), ::testing::Bool()));
 
 TEST(PlanarChecks, ChangeNoPixel) {
   const Scene scene = planar_scene(facing_mirrors(), 4, false);
@@ -90,8 +90,8 @@ GlassErrors glass_errors(const Scene& scene, const Frame& frame) {
   GlassErrors errors;
   for (std::size_t i = 0; i < frame.optic_id.size(); ++i) {
     if (frame.optic_id[i] != 0 || frame.position[i].w == 0) continue;
-    const glm::dvec3 d =
-        glm::normalize(rays.direction(double(i % std::size_t(frame.width)), double(i / std::size_t(frame.width))));
+    const glm::dvec3 d = glm::normalize(
+        rays.direction(double(i % std::size_t(frame.width)), double(i / std::size_t(frame.width))));
     glm::dvec3 n = glass.mesh.vertices[0].normal;
     const bool front = glm::dot(n, scene.camera.eye_mm - c) > 0;
     if (!front) n = -n;
@@ -114,7 +114,8 @@ GlassErrors glass_errors(const Scene& scene, const Frame& frame) {
   return errors;
 }
 
-// A plate moves every ray in parallel: directions are exact, places to the spread of tan b / tan a over the face.
+// A plate moves every ray in parallel: directions are exact, places to the spread of tan b / tan a over the
+// face.
 TEST(Pane, ShowsWhatTwoRefractionsShow) {
   const Scene scene = behind_glass(OpticKind::pane, 20);
   const Frame frame = Renderer(scene).render(Mode::pvrr, scene.camera, picture_of(scene)).frame;
@@ -140,7 +141,8 @@ TEST(Refractor, IsExactOnTheViewsAxisAndCloseAroundIt) {
   EXPECT_LT(quantile(errors.arcmin, 0.5), 30);
 }
 
-// Colours: a uniform world, so that every share can be told apart: passed light is the wall's, reflected the sky's.
+// Colours: a uniform world, so that every share can be told apart: passed light is the wall's, reflected the
+// sky's.
 TEST(Glass, SharesAreFresnels) {
   Scene scene;
   scene.file = "shares";

@@ -6,8 +6,8 @@
 namespace catoptra::test {
 
 /// A rectangle at `middle_mm` whose front looks towards `towards`.
-inline optics::Optic planar_optic(optics::OpticKind kind, const glm::dvec3& middle_mm, const glm::dvec3& towards,
-                                  double width_mm, double height_mm) {
+inline optics::Optic planar_optic(optics::OpticKind kind, const glm::dvec3& middle_mm,
+                                  const glm::dvec3& towards, double width_mm, double height_mm) {
   optics::Optic optic = PlacedMirror::facing(middle_mm, towards, width_mm, height_mm).optic(2);
   optic.kind = kind;
   optic.planar = true;
