@@ -72,6 +72,7 @@ struct MapStats {
   std::size_t texels = 0;
   std::size_t rays = 0;        ///< reflected or refracted for it in this frame
   std::size_t scene_rays = 0;  ///< sent into the scene from there
+  std::size_t draws = 0;       ///< draw calls for surroundings and bodies in its maps, in this frame
 };
 
 /// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
@@ -82,6 +83,8 @@ struct FrameStats {
   std::size_t rays = 0;  ///< all rays of the frame
   int samples = 1;       ///< per pixel in the picture; above 1, all counts and times are sums over them
   std::vector<MapStats> maps;  ///< mode pvrr: all maps, level by level
+  /// Mode pvrr: optics in maps of others that were found not to be seen there, so that no map was made.
+  std::size_t maps_pruned = 0;
 };
 
 struct RenderResult {
@@ -105,6 +108,9 @@ struct FrameOptions {
   /// stay, the rays alone while they move together (PVRR paper, 5). Changes no picture by more than
   /// rounding, only its cost; false: everything anew in every frame.
   bool reuse_static = true;
+  /// Mode pvrr: planar optics get maps of what is seen of them alone. false, to measure what that saves: of the
+  /// whole view, for every face that is turned to the eye, as in Diefenbach and Badler 1994, formula (5).
+  bool check_visibility = true;
   /// Hardware multisampling of outlines, 1, 2, 4 or 8 times: the cheap way while things move. Less where the
   /// driver cannot, which a warning tells. Not in mode raytrace, and not in pictures of several samples,
   /// which have better.

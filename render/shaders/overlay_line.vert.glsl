@@ -10,5 +10,7 @@ layout(location = 5) uniform float lift;  // share of its distance by which the 
 
 void main() {
   precise vec3 relative = ((in_ball.xyz - origin_high) - origin_low) + in_ball.w * in_position;
-  gl_Position = clip_from_relative * vec4(mesh_axes * relative * (1.0 - lift), 1.0);
+  vec3 place = mesh_axes * relative * (1.0 - lift);
+  gl_Position = clip_from_relative * vec4(place, 1.0);
+  gl_ClipDistance[0] = dot(keep, vec4(place, 1.0));
 }

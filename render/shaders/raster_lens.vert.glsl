@@ -25,4 +25,5 @@ void main() {
   v_mask = in_mask;
   v_shown = in_shown;
   gl_Position = clip_from_relative * vec4(relative, 1.0);
+  gl_ClipDistance[0] = dot(keep, vec4(relative, 1.0));
 }

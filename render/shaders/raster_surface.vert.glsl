@@ -21,4 +21,5 @@ void main() {
   v_normal = mesh_axes * in_normal;
   v_texture = in_texture;
   gl_Position = clip_from_relative * vec4(relative, 1.0);
+  gl_ClipDistance[0] = dot(keep, vec4(relative, 1.0));
 }

@@ -16,5 +16,6 @@ layout(std140, binding = 0) uniform View {
   vec4 sky_y;       // ... and y
   vec4 sky_color;   // rgb
   vec4 parameters;  // level-of-detail bias, ambient irradiance, base of ways, limit of ways
+  vec4 keep;        // what is drawn has dot(keep, (relative, 1)) >= 0: see RasterView::keep
   Light lights[kMaxLights];
 };

@@ -147,7 +147,7 @@ void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool 
 glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {
   const glm::dvec3& front = raster_.optic(optic).center_mm();
   const optics::Placement& placement = raster_.optic(optic).placement();
-  if (scene_.optics[optic].kind == optics::OpticKind::mirror)
+  if (scene_.optics[optic].kind != optics::OpticKind::lens)
     return placement.point(before_mirror(scene_.optics[optic], front));
   return placement.point(0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm()));
 }
@@ -168,6 +168,8 @@ void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, con
     draw_lens(optic, target, camera, geometry);
     return;
   }
+  // A cube map from one point says nothing about glass before it: that is not there.
+  if (optics::is_planar_glass(scene_.optics[optic])) return;
   const Cube& cube = cubes_[optic];
   glUseProgram(optic_program(geometry).id());
   RasterScene::set_mesh_origin(camera, raster_.optic(optic));

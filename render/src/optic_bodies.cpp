@@ -4,10 +4,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "optics/reflection.h"
 
 namespace catoptra::render {
 namespace {
 
+using optics::OpticKind;
 using optics::VertexHit;
 
 constexpr std::size_t kRaysPerTask = 256;
@@ -16,7 +20,7 @@ constexpr std::size_t kRaysPerTask = 256;
 constexpr int kMostPassed = 16;
 
 std::vector<const tessellate::OpticArrays*> meshes_of(const optics::Optic& optic) {
-  if (optic.kind == optics::OpticKind::mirror) return {&optic.mesh};
+  if (optic.kind != optics::OpticKind::lens) return {&optic.mesh};
   return {&optic.mesh, &optic.back.mesh};
 }
 
@@ -77,23 +81,49 @@ cad_import::BoundingBox OpticBodies::box(std::size_t index) const {
   return optics::placed(boxes_[index], placements_[index]);
 }
 
-void OpticBodies::add_hits(std::vector<VertexHit>& rays, std::size_t own, bool with_lenses) const {
-  const auto there = [&](std::size_t optic) {
-    return optic != own && (with_lenses || scene_.optics[optic].kind == optics::OpticKind::mirror);
+optics::Hit OpticBodies::nearest(optics::Ray& ray, std::size_t own, bool with_lenses) const {
+  for (int passed = 0; passed < kMostPassed; ++passed) {
+    const optics::Hit found = rays_.intersect(ray);
+    if (!found) return {};
+    const std::size_t met = optic_of_[found.object];
+    const OpticKind kind = scene_.optics[met].kind;
+    if (met != own && kind != OpticKind::pane && (with_lenses || kind == OpticKind::mirror)) return found;
+    ray.t_min_mm = found.t_mm + optics::kSelfHitDistance_mm;
+  }
+  return {};
+}
+
+void OpticBodies::add_hits(std::vector<VertexHit>& rays, std::size_t own, bool with_lenses,
+                           const optics::RayScene& surroundings) const {
+  const auto goes_on = [&](const optics::Ray& ray, const optics::Hit& hit) {
+    const optics::Optic& optic = scene_.optics[optic_of_[hit.object]];
+    if (!with_lenses || !optic.planar || optic.kind != OpticKind::mirror) return false;
+    const glm::dvec3 normal = placements_[optic_of_[hit.object]].direction(optic.mesh.vertices[0].normal);
+    return optic.two_sided || (glm::dot(ray.direction, normal) < 0) != optic.flip;
   };
   const auto add = [&](VertexHit& hit) {
     if (!hit.faces_eye) return;
     optics::Ray ray{hit.surface_point_mm, hit.direction, optics::kSelfHitDistance_mm};
     if (hit.scene_hit) ray.t_max_mm = hit.scene_hit.t_mm;
-    for (int passed = 0; passed < kMostPassed; ++passed) {
-      const optics::Hit found = rays_.intersect(ray);
-      if (!found) return;
-      if (there(optic_of_[found.object])) {
-        hit.scene_hit = found;
-        hit.hit_point_mm = ray.origin_mm + found.t_mm * ray.direction;
-        return;
+    std::size_t from = own;
+    double before_mm = 0;  // the way up to the last planar mirror
+    for (int bounce = 1;; ++bounce) {
+      optics::Hit found = nearest(ray, from, with_lenses);
+      if (found && bounce < scene_.settings.depth && goes_on(ray, found)) {
+        from = optic_of_[found.object];
+        const glm::dvec3 normal = placements_[from].direction(scene_.optics[from].mesh.vertices[0].normal);
+        ray = {ray.origin_mm + found.t_mm * ray.direction, optics::reflect(ray.direction, normal),
+               optics::kSelfHitDistance_mm};
+        before_mm += found.t_mm;
+        hit.scene_hit = surroundings.intersect(ray, optics::kSurroundings);
+        if (hit.scene_hit) ray.t_max_mm = hit.scene_hit.t_mm;
+        continue;
       }
-      ray.t_min_mm = found.t_mm + optics::kSelfHitDistance_mm;
+      if (found) hit.scene_hit = found;
+      if (!hit.scene_hit || (!found && before_mm == 0)) return;
+      hit.scene_hit.t_mm += before_mm;
+      hit.hit_point_mm = hit.surface_point_mm + hit.scene_hit.t_mm * hit.direction;
+      return;
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), kRaysPerTask), [&](const auto& some) {

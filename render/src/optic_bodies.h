@@ -26,15 +26,19 @@ class OpticBodies {
   void commit();
 
   /// Gives every ray (in the world) that shows something its nearest hit among the optics where that is
-  /// nearer than the hit it has. Optic `own`, which the rays leave, is not there, nor are lenses unless
-  /// `with_lenses`.
-  void add_hits(std::vector<optics::VertexHit>& rays, std::size_t own, bool with_lenses) const;
+  /// nearer than the hit it has. Optic `own`, which the rays leave, is not there, nor are lenses and
+  /// refractors unless `with_lenses`, nor panes. Where the others show something themselves (`with_lenses`) a
+  /// ray goes on from a planar mirror, by as many of them as `scene` has depth for, and its hit is where that
+  /// is met on the straight continuation: unfolded, the place that the map shows there.
+  void add_hits(std::vector<optics::VertexHit>& rays, std::size_t own, bool with_lenses,
+                const optics::RayScene& surroundings) const;
 
   /// The box of optic `index`, in the world.
   [[nodiscard]] cad_import::BoundingBox box(std::size_t index) const;
 
  private:
-  void upload(std::size_t index);
+  /// Moves the ray's start past what is not there.
+  [[nodiscard]] optics::Hit nearest(optics::Ray& ray, std::size_t own, bool with_lenses) const;
 
   const Scene& scene_;
   std::vector<optics::Placement> placements_;

@@ -79,10 +79,10 @@ void OpticMask::draw_surfaces(const RasterView& view) const {
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
     const RasterOptic& seen =
-        optic.kind == optics::OpticKind::mirror
-            ? raster_.optic(i)
-            : raster_.side(
-                  i, optics::side_towards(optic, raster_.optic(i).placement().own_point(view.origin_mm)));
+        optic.kind == optics::OpticKind::lens
+            ? raster_.side(
+                  i, optics::side_towards(optic, raster_.optic(i).placement().own_point(view.origin_mm)))
+            : raster_.optic(i);
     RasterScene::set_mesh_origin(view, seen);
     seen.draw_surface();
   }

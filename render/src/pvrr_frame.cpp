@@ -55,8 +55,11 @@ void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay)
 void PvrrFrame::copy_maps(MapColors& maps) const {
   maps.clear(stack_.size());
   for (std::size_t i = 0; i < stack_.size(); ++i) {
-    const PvrrOptic& optic = stack_.optic(i);
-    if (optic.faces_eye()) maps.add(i, optic.map().views(), optic.map().target());
+    if (!stack_.optic(i).faces_eye()) continue;
+    if (const PvrrOptic* const curved = stack_.curved(i))
+      maps.add(i, curved->map().views(), curved->map().target());
+    else
+      stack_.planar(i)->copy_maps(maps);
   }
 }
 
@@ -88,9 +91,10 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   result.warnings = map_warnings();
   for (std::size_t i = 0; i < stack_.size(); ++i) {
-    const PvrrOptic& optic = stack_.optic(i);
-    if (auto warning = optic.warning()) result.warnings.push_back(std::move(*warning));
-    if (auto warning = region_warning(scene_.optics[optic.index()].name, optic.regions()))
+    const PvrrOptic* const optic = stack_.curved(i);
+    if (!optic) continue;
+    if (auto warning = optic->warning()) result.warnings.push_back(std::move(*warning));
+    if (auto warning = region_warning(scene_.optics[i].name, optic->regions()))
       result.warnings.push_back(std::move(*warning));
   }
   for (std::string& warning : stack_.warnings()) result.warnings.push_back(std::move(warning));
@@ -121,8 +125,8 @@ void PvrrFrame::set_overlay(const FrameOptions& options) {
   std::vector<OverlayBall> balls;
   std::vector<OverlayLine> lines;
   for (std::size_t k = 0; k < stack_.size(); ++k) {
-    const PvrrOptic& optic = stack_.optic(k);
-    if (!optic.faces_eye()) continue;
+    if (!stack_.curved(k) || !stack_.optic(k).faces_eye()) continue;
+    const PvrrOptic& optic = *stack_.curved(k);
     for (std::size_t i = 0; i < optic.hits().size(); ++i) {
       const optics::VertexHit& hit = optic.hits()[i];
       if (!passes(hit)) continue;
@@ -154,24 +158,27 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
   target.bind(false);
   overlay_.draw_in_scene(camera, nullptr);
   for (std::size_t i = 0; options.overlay_patches && i < stack_.size(); ++i) {
-    const PvrrOptic& optic = stack_.optic(i);
-    if (optic.faces_eye()) overlay_.draw_patches(camera, optic.seen_surface(), optic.viewpoint_lines());
+    const PvrrOptic* const optic = stack_.curved(i);
+    if (optic && optic->faces_eye())
+      overlay_.draw_patches(camera, optic->seen_surface(), optic->viewpoint_lines());
   }
   if (!options.overlay_vertices) return;
-  for (std::size_t i = 0; i < stack_.size(); ++i) overlay_.draw_mesh(camera, stack_.optic(i).seen_surface());
+  for (std::size_t i = 0; i < stack_.size(); ++i) 
+    overlay_.draw_mesh(camera, stack_.curved(i) ? stack_.curved(i)->seen_surface() : raster_.optic(i));
 }
 
 void PvrrFrame::draw_optic(std::size_t index, const RasterTarget& target, const RasterView& camera,
                            glm::dvec2 offset_px, bool geometry) {
   glBindBufferRange(GL_ATOMIC_COUNTER_BUFFER, 0, outside_counter_.id(),
                     static_cast<GLintptr>(index * sizeof(std::uint32_t)), sizeof(std::uint32_t));
-  stack_.drawer().draw(stack_.optic(index), index, target, camera, offset_px, {geometry, false, false});
+  stack_.draw(index, target, camera, offset_px, geometry);
 }
 
 FrameStats PvrrFrame::statistics() const {
   FrameStats stats;
   for (std::size_t i = 0; i < stack_.size(); ++i) stats.optics.push_back(stack_.optic(i).statistics());
   stats.maps = stack_.statistics();
+  stats.maps_pruned = stack_.pruned();
   for (const MapStats& map : stats.maps) stats.rays += map.scene_rays;
   return stats;
 }

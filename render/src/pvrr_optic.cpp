@@ -86,7 +86,8 @@ void PvrrOptic::place(const optics::Placement& placement) {
 }
 
 void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, double texels_before,
-                       const PvrrOptic* above, MapUse use) {
+                       const LightWay* above, MapUse use) {
+  if (above != above_) traced_from_.reset();
   above_ = above;
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   multisample_ = options.multisample;
@@ -107,14 +108,14 @@ void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, do
 }
 
 bool PvrrOptic::rays_hold(const glm::dvec3& eye_mm) const {
-  if (above_ && above_->traces_ != traced_above_) return false;
+  if (above_ && above_->changes() != traced_above_) return false;
   return traced_from_ && glm::distance(*traced_from_, eye_mm) <=
                              kEyeRounding * glm::distance(eye_mm, raster_.optic(index_).center_mm());
 }
 
 void PvrrOptic::trace(const glm::dvec3& eye_mm) {
   traced_from_ = eye_mm;
-  if (above_) traced_above_ = above_->traces_;
+  if (above_) traced_above_ = above_->changes();
   ++traces_;
   hits_hold_ = false;
   light_.reset();
@@ -175,7 +176,7 @@ void PvrrOptic::find_hits() {
 std::vector<VertexHit> PvrrOptic::with_hits(std::vector<VertexHit> rays) const {
   const auto find = [&](std::vector<VertexHit> in_world) {
     in_world = optics::find_scene_hits(std::move(in_world), rays_);
-    if (place_.bodies) place_.bodies->add_hits(in_world, index_, place_.shows_lenses);
+    if (place_.bodies) place_.bodies->add_hits(in_world, index_, place_.shows_lenses, rays_);
     return in_world;
   };
   if (placement_ == optics::Placement()) return find(std::move(rays));

@@ -24,6 +24,7 @@
 #include "render/src/pvrr_refinement.h"
 #include "render/src/raster_lens.h"
 #include "render/src/raster_scene.h"
+#include "render/src/stack_optic.h"
 
 namespace catoptra::render {
 
@@ -39,33 +40,35 @@ struct OpticPlace {
 /// map would be too wide alone, and what no ray can ask for is not drawn (see unseen_parts()).
 enum class MapUse { picture, exact_rays };
 
-class PvrrOptic {
+class PvrrOptic final : public StackOptic, public LightWay {
  public:
   /// Keeps the references; `bounds`: of everything in the scene, in the world.
   PvrrOptic(const Scene& scene, std::size_t optic, RasterScene& raster, const optics::RayScene& rays,
             const cad_import::BoundingBox& bounds, const OpticPlace& place = {});
 
   /// The optic itself has changed; or something else that its map shows; or the bounds of everything.
-  void optic_changed();
-  void map_changed() { drawn_.reset(); }
-  void set_bounds(const cad_import::BoundingBox& bounds);
+  void optic_changed() override;
+  void map_changed() override { drawn_.reset(); }
+  void set_bounds(const cad_import::BoundingBox& bounds) override;
   /// The optic is somewhere else. Its rays stay if the eye comes along.
-  void place(const optics::Placement& placement);
+  void place(const optics::Placement& placement) override;
   /// Other optics have changed or moved, and rays may meet them.
-  void others_changed() { hits_hold_ = false; }
+  void others_changed() override { hits_hold_ = false; }
 
   /// Steps 1 to 3 of the paper's 3.1, as far as eye, camera or optic have changed: rays of the vertices where
   /// the eye has another place as the optic sees it; their hits where either has another place in the world,
   /// and with them patches, viewpoints, map coordinates, and the sizes of the maps. `camera`: in the world,
   /// without sample offset. `texels_before`: texels per pixel of the map that the camera is of, 1 for the
-  /// picture. `above`: the optic in whose map the camera sees this one, by way of which light comes here;
-  /// null: none. It must outlive this, and its own update() must have been called.
+  /// picture. `above`: how light comes here where the camera is that of another optic's map and its rays
+  /// come from no one point; null: from the camera's eye. It must outlive this.
   void update(const RasterView& camera, const FrameOptions& options, double texels_before = 1,
-              const PvrrOptic* above = nullptr, MapUse use = MapUse::picture);
+              const LightWay* above = nullptr, MapUse use = MapUse::picture);
 
   /// How light comes from the eye through this optic to a point beyond it, both in the world; nullopt where
   /// it does not.
-  [[nodiscard]] std::optional<optics::Arrival> light_to(const glm::dvec3& point_mm) const;
+  [[nodiscard]] std::optional<optics::Arrival> light_to(const glm::dvec3& point_mm) const override;
+  [[nodiscard]] std::size_t changes() const override { return traces_; }
+  [[nodiscard]] const LightWay* light(std::size_t) const override { return this; }
 
   /// Pass 1, unless the maps are there already; returns whether they were drawn. An `overlay` (or null) is
   /// drawn into them, and before that the optics that each shows by their own maps (`nested`: per patch, or
@@ -75,12 +78,13 @@ class PvrrOptic {
 
   /// The views of the patches' maps in the world, with their guard (after update(), of an optic that faces
   /// the eye), without sample offset; and the offset of their samples within their texels.
-  [[nodiscard]] std::size_t patch_count() const { return views_.size(); }
-  [[nodiscard]] RasterView map_camera(std::size_t patch) const;
-  [[nodiscard]] double texels_per_pixel(std::size_t patch) const {
+  [[nodiscard]] std::size_t patch_count() const override { return views_.size(); }
+  [[nodiscard]] bool has_map(std::size_t) const override { return faces_eye_; }
+  [[nodiscard]] RasterView map_camera(std::size_t patch) const override;
+  [[nodiscard]] double texels_per_pixel(std::size_t patch) const override {
     return map_sizes_[patch].texels_per_pixel;
   }
-  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const;
+  [[nodiscard]] glm::dvec2 map_offset(glm::dvec2 offset_px) const override;
 
   /// For the program in use: the map of pass 2 of `patch` (part of seen_surface()), with the map rays that
   /// geometry needs.
@@ -88,7 +92,7 @@ class PvrrOptic {
 
   [[nodiscard]] std::size_t index() const { return index_; }
   [[nodiscard]] const PvrrMap& map() const { return map_; }
-  [[nodiscard]] bool faces_eye() const { return faces_eye_; }
+  [[nodiscard]] bool faces_eye() const override { return faces_eye_; }
   /// Per vertex of the mesh drawn, in the optic's frame; of a lens at the reference wavelength.
   [[nodiscard]] std::span<const optics::VertexHit> hits() const;
   /// Of the map in which hit number `hit` has its place; the view in the optic's frame.
@@ -102,7 +106,11 @@ class PvrrOptic {
   /// length.
   [[nodiscard]] std::vector<OverlayLine> viewpoint_lines() const;
   /// What the last update() has cost and found.
-  [[nodiscard]] OpticStats statistics() const;
+  [[nodiscard]] OpticStats statistics() const override;
+  [[nodiscard]] std::size_t map_texels() const override {
+    const glm::ivec2 texels = map_.layout().texels;
+    return std::size_t(texels.x) * std::size_t(texels.y);
+  }
   /// What the vertices see that no single viewpoint can show, or shows roughly; over all patches.
   [[nodiscard]] optics::ViewRegions regions() const;
   /// Where the last refinement ended at its limit.
@@ -148,7 +156,7 @@ class PvrrOptic {
   optics::Placement placement_;
 
   std::optional<glm::dvec3> traced_from_;  ///< the eye, in the optic's frame, that what follows belongs to
-  const PvrrOptic* above_ = nullptr;
+  const LightWay* above_ = nullptr;
   std::size_t traced_above_ = 0;  ///< how often the rays of the optic above had been traced
   std::size_t traces_ = 0;
   std::optional<optics::PassedLight> light_;

@@ -68,7 +68,9 @@ std::optional<PlaneView> plane_view(const optics::Optic& optic, const RasterView
                                     const optics::VirtualView& fitted,
                                     const cad_import::BoundingBox& bounds) {
   if (fitted.projection != optics::MapProjection::perspective || !is_plane(optic)) return std::nullopt;
-  if (camera.projection[2][3] == 0) return std::nullopt;  // a parallel projection
+  // A parallel projection, or the skewed one behind a refractor.
+  if (camera.projection[2][3] != -1 || camera.projection[0][3] != 0 || camera.projection[1][3] != 0)
+    return std::nullopt;
   const auto box = pixel_box(optic, camera);
   if (!box) return std::nullopt;
   const glm::ivec2 texels(box->end - box->begin);

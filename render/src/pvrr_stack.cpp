@@ -9,8 +9,9 @@
 namespace catoptra::render {
 namespace {
 
-// Optics that all see each other make a tree that grows with the power of the depth.
-constexpr std::size_t kMostMaps = 256;
+// Optics that all see each other make a tree that grows with the power of the depth. Curved ones trace rays
+// and have maps of their own resolution; the maps of planar ones together show each pixel about once a level.
+constexpr std::size_t kMostCurved = 256, kMostPlanar = 4096;
 
 // Where the eye of a map of parallel rays is put: over an optic of 1 m they turn by less than 1e-6 rad.
 constexpr double kFarEye_mm = 1e9;
@@ -52,17 +53,30 @@ PvrrStack::PvrrStack(const Scene& scene, RasterScene& raster, const optics::RayS
       bounds_(bounds),
       bodies_(scene),
       placements_(scene.optics.size()),
-      draw_(scene, raster) {
+      draw_(scene, raster),
+      planar_draw_(scene, raster) {
   for (std::size_t i = 0; i < scene.optics.size(); ++i) roots_.push_back(make_node(i, 1, 0));
 }
 
 std::unique_ptr<PvrrStack::Node> PvrrStack::make_node(std::size_t index, int level, std::size_t patch) const {
-  OpticPlace place;
-  place.bodies = scene_.optics.size() > 1 && scene_.settings.depth > 1 ? &bodies_ : nullptr;
-  place.shows_lenses = level < scene_.settings.depth;
-  place.nested = level > 1;
-  auto node = std::make_unique<Node>(scene_, index, raster_, rays_, bounds_, place, level, patch);
-  node->optic.place(placements_[index]);
+  auto node = std::make_unique<Node>();
+  node->index = index;
+  node->level = level;
+  node->patch = patch;
+  if (scene_.optics[index].planar) {
+    auto planar = std::make_unique<PlanarOptic>(scene_, index, raster_);
+    node->planar = planar.get();
+    node->optic = std::move(planar);
+  } else {
+    OpticPlace place;
+    place.bodies = scene_.optics.size() > 1 && scene_.settings.depth > 1 ? &bodies_ : nullptr;
+    place.shows_lenses = level < scene_.settings.depth;
+    place.nested = level > 1;
+    auto curved = std::make_unique<PvrrOptic>(scene_, index, raster_, rays_, bounds_, place);
+    node->curved = curved.get();
+    node->optic = std::move(curved);
+  }
+  node->optic->place(placements_[index]);
   return node;
 }
 
@@ -79,7 +93,7 @@ void PvrrStack::visit(const Visit& each) {
 void PvrrStack::optic_changed(std::size_t index, const cad_import::BoundingBox& bounds) {
   bodies_.optic_changed(index);
   visit([&](Node& node) {
-    if (node.index == index) node.optic.optic_changed();
+    if (node.index == index) node.optic->optic_changed();
   });
   bounds_changed(bounds);
 }
@@ -89,7 +103,7 @@ void PvrrStack::place_optic(std::size_t index, const optics::Placement& placemen
   placements_[index] = placement;
   bodies_.place(index, placement);
   visit([&](Node& node) {
-    if (node.index == index) node.optic.place(placement);
+    if (node.index == index) node.optic->place(placement);
   });
   bounds_changed(bounds);
 }
@@ -98,23 +112,24 @@ void PvrrStack::bounds_changed(const cad_import::BoundingBox& bounds) {
   bounds_ = bounds;
   const bool several = scene_.optics.size() > 1;
   visit([&](Node& node) {
-    node.optic.set_bounds(bounds);
-    node.optic.map_changed();
-    if (several) node.optic.others_changed();
+    node.optic->set_bounds(bounds);
+    node.optic->map_changed();
+    if (several) node.optic->others_changed();
   });
 }
 
 void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use) {
   levels_ = levels;
+  camera_ = camera;
   bodies_.commit();
-  left_out_ = 0;
-  nodes_ = roots_.size();
+  left_out_ = pruned_ = curved_nodes_ = planar_nodes_ = 0;
   std::vector<Node*> queue;
   for (std::size_t i = 0; i < roots_.size(); ++i) {
     Node& root = *roots_[i];
-    root.optic.update(camera, options, 1, nullptr, use);
+    ++(root.planar ? planar_nodes_ : curved_nodes_);
+    const bool seen = update_node(root, options, {camera, 1, nullptr, {}, use});
     // What an optic shows that the picture does not is of no interest.
-    if (box_in_view(camera, bodies_.box(i)).seen)
+    if (seen && (root.planar || box_in_view(camera, bodies_.box(i)).seen))
       queue.push_back(&root);
     else
       set_children(root, {});
@@ -123,36 +138,63 @@ void PvrrStack::update(const RasterView& camera, const FrameOptions& options, in
   for (std::size_t i = 0; i < queue.size(); ++i) update_children(*queue[i], options, queue);
 }
 
+bool PvrrStack::update_node(Node& node, const FrameOptions& options, const Sight& sight) {
+  if (node.planar)
+    return node.planar->update(
+        sight.camera, options,
+        {sight.above, sight.texels_before, sight.aperture, options.check_visibility, glm::dvec2(0)});
+  node.curved->update(sight.camera, options, sight.texels_before, sight.above, sight.use);
+  return true;
+}
+
+bool PvrrStack::has_room(std::size_t index) const {
+  return scene_.optics[index].planar ? planar_nodes_ < kMostPlanar : curved_nodes_ < kMostCurved;
+}
+
 void PvrrStack::update_children(Node& node, const FrameOptions& options, std::vector<Node*>& next) {
   std::vector<std::unique_ptr<Node>> former = std::exchange(node.children, {}), children;
-  if (node.level < levels_ && node.optic.faces_eye())
-    for (std::size_t patch = 0; patch < node.optic.patch_count(); ++patch) {
-      const RasterView map = node.optic.map_camera(patch);
-      for (std::size_t index = 0; index < scene_.optics.size(); ++index) {
-        if (index == node.index || !may_show(node, map, index)) continue;
-        if (nodes_ >= kMostMaps) {
-          ++left_out_;
-          continue;
-        }
-        ++nodes_;
-        const auto known = std::find_if(former.begin(), former.end(), [&](const auto& child) {
-          return child && child->index == index && child->patch == patch;
-        });
-        auto child = known != former.end() ? std::move(*known) : make_node(index, node.level + 1, patch);
-        child->optic.update(with_eye(map), options, node.optic.texels_per_pixel(patch), &node.optic);
-        next.push_back(child.get());
-        children.push_back(std::move(child));
-      }
-    }
+  if (node.level < levels_ && node.optic->faces_eye())
+    for (std::size_t patch = 0; patch < node.optic->patch_count(); ++patch)
+      if (node.optic->has_map(patch)) update_patch(node, patch, options, former, children);
+  for (const auto& child : children) next.push_back(child.get());
   set_children(node, std::move(children));
 }
 
+void PvrrStack::update_patch(Node& node, std::size_t patch, const FrameOptions& options,
+                             std::vector<std::unique_ptr<Node>>& former,
+                             std::vector<std::unique_ptr<Node>>& children) {
+  const RasterView map = node.optic->map_camera(patch);
+  Sight sight{with_eye(map), node.optic->texels_per_pixel(patch), node.optic->light(patch), {}, MapUse::picture};
+  if (node.planar) sight.aperture = node.planar->aperture(patch);
+  for (std::size_t index = 0; index < scene_.optics.size(); ++index) {
+    if (index == node.index) continue;
+    if ((options.check_visibility || !scene_.optics[index].planar) && !may_show(node, map, index)) {
+      ++pruned_;
+      continue;
+    }
+    if (!has_room(index)) {
+      ++left_out_;
+      continue;
+    }
+    const auto known = std::find_if(former.begin(), former.end(), [&](const auto& child) {
+      return child && child->index == index && child->patch == patch;
+    });
+    auto child = known != former.end() ? std::move(*known) : make_node(index, node.level + 1, patch);
+    if (!update_node(*child, options, sight)) {
+      ++pruned_;
+      continue;
+    }
+    ++(child->planar ? planar_nodes_ : curved_nodes_);
+    children.push_back(std::move(child));
+  }
+}
+
 void PvrrStack::set_children(Node& node, std::vector<std::unique_ptr<Node>> children) {
-  std::vector<std::vector<std::size_t>> shown(node.optic.patch_count()), before;
+  std::vector<std::vector<std::size_t>> shown(node.optic->patch_count()), before;
   for (const auto& child : children) shown[child->patch].push_back(child->index);
   for (const NestedOptics& nested : node.nested) before.push_back(nested.optics);
   if (shown != before) {
-    node.optic.map_changed();
+    node.optic->map_changed();
     node.nested.resize(shown.size());
     for (std::size_t patch = 0; patch < shown.size(); ++patch) node.nested[patch].optics = shown[patch];
   }
@@ -161,28 +203,49 @@ void PvrrStack::set_children(Node& node, std::vector<std::unique_ptr<Node>> chil
 
 bool PvrrStack::may_show(const Node& node, const RasterView& map, std::size_t index) const {
   const cad_import::BoundingBox box = bodies_.box(index);
-  return box_in_view(map, box).seen && reaches_light(node.optic, box);
+  return box_in_view(map, box).seen && (!node.curved || reaches_light(*node.curved, box));
 }
 
 void PvrrStack::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  for (const auto& root : roots_) draw_map(*root, offset_px, geometry, overlay);
+  const RasterView camera = with_sample_offset(camera_, offset_px);
+  for (const auto& root : roots_) draw_map(*root, camera, offset_px, geometry, overlay);
 }
 
-bool PvrrStack::draw_map(Node& node, glm::dvec2 offset_px, bool geometry, Overlay* overlay) {
-  const glm::dvec2 in_map = node.optic.map_offset(offset_px);
+bool PvrrStack::draw_map(Node& node, const RasterView& above, glm::dvec2 offset_px, bool geometry,
+                         Overlay* overlay) {
+  const glm::dvec2 in_map = node.optic->map_offset(offset_px);
   bool changed = false;
-  for (const auto& child : node.children) changed = draw_map(*child, in_map, geometry, nullptr) || changed;
-  if (changed) node.optic.map_changed();
+  for (const auto& child : node.children) {
+    const RasterView map = node.planar ? node.planar->map_view(child->patch, above)
+                                       : with_sample_offset(node.curved->map_camera(child->patch), in_map);
+    changed = draw_map(*child, map, in_map, geometry, nullptr) || changed;
+  }
+  if (changed) node.optic->map_changed();
   for (std::size_t patch = 0; patch < node.nested.size(); ++patch)
     node.nested[patch].draw = [&, patch](const RasterView& view, const RasterPass& pass,
                                          const RasterTarget& target) {
       for (const auto& child : node.children)
         if (child->patch == patch)
-          draw_.draw(child->optic, child->index, target, view, in_map,
-                     {pass.geometry, true, pass.clip_depth != nullptr});
+          draw_node(*child, target, view, in_map, {pass.geometry, true, pass.clip_depth != nullptr});
     };
-  node.drawn = node.optic.draw_map(offset_px, geometry, overlay, node.nested);
+  const std::size_t before = raster_.draws();
+  node.drawn = node.planar ? node.planar->draw_maps(above, geometry, overlay, node.nested) > 0
+                           : node.curved->draw_map(offset_px, geometry, overlay, node.nested);
+  node.draws = raster_.draws() - before;
   return node.drawn;
+}
+
+void PvrrStack::draw_node(const Node& node, const RasterTarget& target, const RasterView& view,
+                          glm::dvec2 offset_px, const PvrrDraw::Look& look) {
+  if (node.planar)
+    planar_draw_.draw(*node.planar, view, look);
+  else
+    draw_.draw(*node.curved, node.index, target, view, offset_px, look);
+}
+
+void PvrrStack::draw(std::size_t index, const RasterTarget& target, const RasterView& camera,
+                     glm::dvec2 offset_px, bool geometry) {
+  draw_node(*roots_[index], target, camera, offset_px, {geometry, false, false});
 }
 
 std::vector<MapStats> PvrrStack::statistics() const {
@@ -193,11 +256,10 @@ std::vector<MapStats> PvrrStack::statistics() const {
     const auto [node, way] = nodes[i];
     for (const auto& child : node->children)
       nodes.emplace_back(child.get(), way + " > " + scene_.optics[child->index].name);
-    if (!node->optic.faces_eye()) continue;
-    const OpticStats optic = node->optic.statistics();
-    const glm::ivec2 texels = node->optic.map().layout().texels;
-    maps.push_back({way, node->level, node->drawn, std::size_t(texels.x) * std::size_t(texels.y), optic.rays,
-                    optic.scene_rays});
+    if (!node->optic->faces_eye()) continue;
+    const OpticStats optic = node->optic->statistics();
+    maps.push_back({way, node->level, node->drawn, node->optic->map_texels(), optic.rays, optic.scene_rays,
+                    node->draws});
   }
   return maps;
 }
@@ -205,7 +267,8 @@ std::vector<MapStats> PvrrStack::statistics() const {
 std::vector<std::string> PvrrStack::warnings() const {
   if (left_out_ == 0) return {};
   return {"optics in optics: at least " + std::to_string(left_out_) + " maps beyond the limit of " +
-          std::to_string(kMostMaps) + " were left out; their optics show as plain bodies (a smaller " +
+          std::to_string(kMostCurved) + " of curved and " + std::to_string(kMostPlanar) +
+          " of planar ones were left out; their optics show as plain bodies (a smaller " +
           "render.depth needs fewer)"};
 }
 

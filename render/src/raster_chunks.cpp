@@ -126,6 +126,10 @@ BoxInView box_in_view(const RasterView& view, const cad_import::BoundingBox& box
     // A linear function over the box is largest at the corner to which its gradient points.
     if (glm::dot(glm::dvec3(side), middle) + side.w + glm::dot(glm::abs(glm::dvec3(side)), half) < 0)
       return {};
+  if (glm::dot(glm::dvec3(view.keep), middle) + view.keep.w +
+          glm::dot(glm::abs(glm::dvec3(view.keep)), half) <
+      0)
+    return {};
   const glm::dvec3 ahead = -glm::transpose(view.rotation)[2];
   const double nearest = nearest_seen(middle, half, {sides.data(), 4}, ahead);
   return {std::isfinite(nearest), nearest - room};

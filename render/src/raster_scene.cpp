@@ -27,7 +27,7 @@ struct GpuLight {
 
 struct GpuView {
   glm::mat4 clip_from_relative;
-  glm::vec4 origin, sky_center, sky_x, sky_y, sky_color, parameters;
+  glm::vec4 origin, sky_center, sky_x, sky_y, sky_color, parameters, keep;
   GpuLight lights[kMaxLights];
 };
 
@@ -44,7 +44,7 @@ GpuLight gpu_light(const Light& light, const glm::dvec3& origin_mm) {
 }
 
 std::optional<RasterOptic> back_of(const optics::Optic& optic) {
-  if (optic.kind == optics::OpticKind::mirror) return std::nullopt;
+  if (optic.kind != optics::OpticKind::lens) return std::nullopt;
   return RasterOptic(optic.back.mesh);
 }
 
@@ -173,6 +173,7 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   gpu.sky_y = glm::vec4(glm::vec3(directions.dy), 0);
   gpu.sky_color = glm::vec4(scene_.environment.color, 0);
   gpu.parameters = glm::vec4(level_bias, scene_.environment.ambient, way_base(), way_limit());
+  gpu.keep = glm::vec4(view.keep);
   for (std::size_t i = 0; i < lights_.size(); ++i) gpu.lights[i] = gpu_light(lights_[i], view.origin_mm);
   update_buffer(view_uniforms_, std::as_bytes(std::span(&gpu, 1)));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_uniforms_.id());
@@ -185,6 +186,10 @@ void RasterScene::begin_view(const RasterView& view, float level_bias) const {
   glDepthFunc(GL_GREATER);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
+  if (view.keeps_all())
+    glDisable(GL_CLIP_DISTANCE0);
+  else
+    glEnable(GL_CLIP_DISTANCE0);
 }
 
 float RasterScene::way_base() const {
@@ -315,6 +320,7 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
       material = nullptr;
     }
     if (material != &batch) set_material(*(material = &batch));
+    ++draws_;
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(chunk.triangles.count), GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(chunk.triangles.first * sizeof(std::uint32_t)));
   }
@@ -325,14 +331,16 @@ void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   glEnable(GL_CULL_FACE);
   for (std::size_t i = 0; i < optics_.size(); ++i) {
-    if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
+    if (pass.except == i || scene_.optics[i].kind != optics::OpticKind::mirror) continue;
     if (std::find(pass.nested.begin(), pass.nested.end(), i) != pass.nested.end()) continue;
     set_mesh_origin(view, optics_[i]);
     set_vec3(kEmissive, glm::vec3(0));
     for (const bool reflecting : {true, false}) {
-      set_vec3(kAlbedo, reflecting ? scene_.optics[i].reflectance : glm::vec3(kOpticBackAlbedo));
+      const bool bright = reflecting || scene_.optics[i].two_sided;
+      set_vec3(kAlbedo, bright ? scene_.optics[i].reflectance : glm::vec3(kOpticBackAlbedo));
       glCullFace(reflecting == scene_.optics[i].flip ? GL_FRONT : GL_BACK);
       optics_[i].draw_surface();
+      ++draws_;
     }
   }
   glDisable(GL_CULL_FACE);

@@ -84,6 +84,9 @@ class RasterScene {
                               const optics::Placement& placement);
   static void set_mesh_origin(const RasterView& view, const RasterOptic& optic);
 
+  /// Draw calls for surroundings and optics as bodies, since it was made.
+  [[nodiscard]] std::size_t draws() const { return draws_; }
+
   /// For programs that shade, see raster_shading.glsl.
   [[nodiscard]] std::vector<std::string> shading_defines() const;
 
@@ -138,6 +141,7 @@ class RasterScene {
   std::map<unsigned, GlProgram> surface_programs_;
   std::map<bool, GlProgram> sky_programs_;
   GlProgram depth_program_;
+  std::size_t draws_ = 0;
   std::map<std::pair<std::size_t, optics::LensSide>, LensMask> masks_;
 };
 

@@ -46,9 +46,9 @@ void RasterTarget::bind(bool geometry) const {
   glBindFramebuffer(GL_FRAMEBUFFER, geometry ? with_geometry_.id() : color_only_.id());
 }
 
-void RasterTarget::resolve_into(const RasterTarget& target) const {
+void RasterTarget::resolve_into(const RasterTarget& target, bool depth) const {
   glBlitNamedFramebuffer(color_only_.id(), target.color_only_.id(), 0, 0, size_.x, size_.y, 0, 0, size_.x,
-                         size_.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+                         size_.y, GL_COLOR_BUFFER_BIT | (depth ? GL_DEPTH_BUFFER_BIT : 0u), GL_NEAREST);
 }
 
 std::vector<glm::vec4> read_texture(const GlTexture& texture, glm::ivec2 size) {

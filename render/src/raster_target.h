@@ -27,7 +27,8 @@ class RasterTarget {
   void bind(bool geometry) const;
 
   /// The mean of each pixel's samples becomes the colour of `target`, which has the same size and one sample.
-  void resolve_into(const RasterTarget& target) const;
+  /// With `depth` also the depth of one of the samples.
+  void resolve_into(const RasterTarget& target, bool depth = false) const;
 
   [[nodiscard]] glm::ivec2 size() const { return size_; }
   [[nodiscard]] int multisample() const { return multisample_; }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "render/src/sampling.h"
 
@@ -58,6 +59,15 @@ glm::dvec3 RasterView::pixel(const glm::dvec3& point_mm) const {
 RasterView::Directions RasterView::directions() const {
   const glm::dmat3 to_world = glm::transpose(rotation);
   if (projection[2][3] == 0) return {to_world * glm::dvec3(0, 0, -1), glm::dvec3(0), glm::dvec3(0)};
+  const bool skewed = projection[1][0] != 0 || projection[0][1] != 0 || projection[0][3] != 0 ||
+                      projection[1][3] != 0 || projection[2][3] != -1;
+  if (skewed) {
+    // Any projective picture (of light that glass has refracted): directions d with image * d = (x, y, 1).
+    const glm::dmat4 clip = clip_from_relative();
+    const auto row = [&](int r) { return glm::dvec3(clip[0][r], clip[1][r], clip[2][r]); };
+    const glm::dmat3 direction_of = glm::inverse(glm::transpose(glm::dmat3(row(0), row(1), row(3))));
+    return {direction_of[2], direction_of[0], direction_of[1]};
+  }
   // Perspective: clip x = p00 x + p20 z, clip w = -z; solved for the eye-space direction with z = -1.
   const auto eye = [&](double x, double y) {
     return glm::dvec3((x + projection[2][0]) / projection[0][0], (y + projection[2][1]) / projection[1][1],
@@ -70,6 +80,7 @@ RasterView::Directions RasterView::directions() const {
 RasterView in_own_frame(RasterView view, const optics::Placement& placement) {
   view.origin_mm = placement.own_point(view.origin_mm);
   view.rotation = view.rotation * placement.rotation;
+  view.keep = glm::dvec4(placement.own_direction(glm::dvec3(view.keep)), view.keep.w);
   return view;
 }
 
@@ -93,6 +104,11 @@ RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_
   view.projection[2][1] = view.projection[1][1] * camera.shift.y;
   view.size = size;
   offset_samples(view.projection, size, offset_px);
+  return view;
+}
+
+RasterView with_sample_offset(RasterView view, glm::dvec2 offset_px) {
+  offset_samples(view.projection, view.size, offset_px);
   return view;
 }
 

@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "optics/placement.h"
 #include "optics/virtual_view.h"
@@ -20,7 +21,12 @@ struct RasterView {
   glm::ivec2 size{1, 1};                      ///< pixels
   glm::ivec2 corner{0, 0};                    ///< of what is drawn, in the target: column and row
   float depth_of_far = 0, depth_of_near = 1;  ///< what is stored for clip depth 0 and 1; the greater hides
+  /// What lies on the other side of a plane is not drawn: of a point p relative to the origin, in world axes,
+  /// only dot(keep, (p, 1)) >= 0 is.
+  glm::dvec4 keep{0, 0, 0, 1};
   bool bottom_row_first = false;  ///< row 0 of what is drawn is the bottom one (cube maps), else the top one
+
+  [[nodiscard]] bool keeps_all() const { return keep == glm::dvec4(0, 0, 0, 1); }
 
   /// World position relative to the origin -> clip space.
   [[nodiscard]] glm::dmat4 clip_from_relative() const;
@@ -42,6 +48,9 @@ struct RasterView {
 /// The picture's view, camera.shift included: infinite far plane, near plane at kCameraNear. `offset_px`
 /// moves the place in every pixel at which the scene is sampled: of a sample camera.offset_px.
 [[nodiscard]] RasterView camera_view(const Camera& camera, glm::ivec2 size, glm::dvec2 offset_px = {0, 0});
+
+/// The same view with the samples moved by `offset_px`, +x right, +y down.
+[[nodiscard]] RasterView with_sample_offset(RasterView view, glm::dvec2 offset_px);
 
 /// The reflection map's view; `offset_px` as above, in texels. Where it also shows a zooming region, the
 /// reversed one has the lower half of the stored depths.
