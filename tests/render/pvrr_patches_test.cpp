@@ -180,6 +180,62 @@ TEST(Patches, StepAcrossABorderIsBelowTheStepInside) {
   EXPECT_LT(steps.across, steps.inside) << "arcmin";
 }
 
+/// Whether the exact picture shows one surface at pixels i and i + stride and around them.
+bool away_from_occlusion(const Frame& exact, std::size_t i, std::size_t stride) {
+  const auto width = std::size_t(exact.width);
+  const auto x = i % width, y = i / width;
+  if (x < 3 || x + 4 >= width || y < 3 || y + 4 >= std::size_t(exact.height)) return false;
+  for (const std::size_t center : {i, i + stride})
+    for (int v = -2; v <= 2; ++v)
+      for (int u = -2; u <= 2; ++u) {
+        const std::size_t k = center + std::size_t(v * exact.width + u);
+        // The wall lies at z = 6000, the posts' faces at 500 and 560.
+        if (exact.optic_id[k] != 0 || exact.position[k].w != 1 ||
+            std::abs(exact.position[k].z - exact.position[i].z) > 1)
+          return false;
+      }
+  return true;
+}
+
+// Near posts before a far wall, where each patch's viewpoint hides something else: on either surface, away
+// from its outlines, the point shown steps across a border by no more than inside, as it is and against the
+// exact step.
+TEST(Patches, WorldPositionStepsAcrossABorderNoMoreThanInside) {
+  Scene scene = posts_before(conic_mirror(300, 0, 170, 110, 25, 17), 16);
+  scene.settings.patch_fov_rad = 0.35;
+  const Outcome found = outcome(scene);
+  ASSERT_GE(patches_of(found.picture), 8u);
+  const PatchLabels labels = labels_of(scene, found.picture);
+  const Frame &f = found.picture.frame, &exact = found.exact.frame;
+  std::vector<int> patch(f.color.size(), -1);
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    if (f.optic_id[i] == 0 && f.position[i].w == 1)
+      patch[i] = int(patch_at(scene.optics[0].mesh, labels, glm::dvec3(f.surface[i])));
+  Steps on_wall, on_posts, excess;
+  for (const std::size_t stride : {std::size_t(1), std::size_t(f.width)})
+    for (std::size_t i = 0; i + stride < patch.size(); ++i) {
+      if (patch[i] < 0 || patch[i + stride] < 0 || !away_from_occlusion(exact, i, stride)) continue;
+      const double step = glm::distance(glm::dvec3(f.position[i]), glm::dvec3(f.position[i + stride])),
+                   right =
+                       glm::distance(glm::dvec3(exact.position[i]), glm::dvec3(exact.position[i + stride]));
+      const bool across = patch[i] != patch[i + stride];
+      const auto add = [&](Steps& steps, double value) {
+        double& most = across ? steps.across : steps.inside;
+        most = std::max(most, value);
+        steps.crossings += across;
+      };
+      add(exact.position[i].z > 1000 ? on_wall : on_posts, step);
+      add(excess, step / right);
+    }
+  std::printf("wall %.1f across %.1f inside mm; posts %.2f, %.2f; over the exact %.3f, %.3f\n",
+              on_wall.across, on_wall.inside, on_posts.across, on_posts.inside, excess.across, excess.inside);
+  EXPECT_GT(on_wall.crossings, 200u);
+  EXPECT_GT(on_posts.crossings, 50u);
+  EXPECT_LT(on_wall.across, on_wall.inside);
+  EXPECT_LT(on_posts.across, on_posts.inside);
+  EXPECT_LT(excess.across, excess.inside);
+}
+
 TEST(Patches, BorderVerticesAreSharedWithTheirHits) {
   const auto optic = conic_mirror(300, 0, 170, 110, 5, 3);
   std::vector<std::uint32_t> labels;
