@@ -34,6 +34,7 @@ struct PlanarMaterial {
   /// Standard deviations of the tilt of the normal, along the face's first edge and across it: what a rough
   /// surface reflects, by accumulated samples.
   glm::dvec2 roughness_rad{0};
+  glm::dvec3 first_edge{1, 0, 0};  ///< direction of that edge
 };
 
 struct Optic {

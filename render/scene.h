@@ -28,6 +28,7 @@ struct Camera {
   glm::dvec2 offset_px{0,
                        0};  ///< of the place in every pixel that is shown from its centre; +x right, +y down
   glm::dvec2 shift{0, 0};   ///< of the picture's middle from the axis, as tangents; +x right, +y up
+  int sample = 0;           ///< its number in the picture: by it rough optics are tilted
 
   bool operator==(const Camera&) const = default;
 };

@@ -147,7 +147,7 @@ void CubemapFrame::trace_lens(std::size_t optic, const glm::dvec3& eye_mm, bool 
 glm::dvec3 CubemapFrame::center_mm(std::size_t optic) const {
   const glm::dvec3& front = raster_.optic(optic).center_mm();
   const optics::Placement& placement = raster_.optic(optic).placement();
-  if (scene_.optics[optic].kind == optics::OpticKind::mirror)
+  if (scene_.optics[optic].kind != optics::OpticKind::lens)
     return placement.point(before_mirror(scene_.optics[optic], front));
   return placement.point(0.5 * (front + raster_.side(optic, optics::LensSide::back).center_mm()));
 }
@@ -164,6 +164,7 @@ void CubemapFrame::draw_lens(std::size_t optic, const RasterTarget& target, cons
 
 void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
                               bool geometry) {
+  if (optics::is_planar_glass(scene_.optics[optic])) return;
   if (scene_.optics[optic].kind == optics::OpticKind::lens) {
     draw_lens(optic, target, camera, geometry);
     return;

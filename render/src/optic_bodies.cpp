@@ -16,7 +16,7 @@ constexpr std::size_t kRaysPerTask = 256;
 constexpr int kMostPassed = 16;
 
 std::vector<const tessellate::OpticArrays*> meshes_of(const optics::Optic& optic) {
-  if (optic.kind == optics::OpticKind::mirror) return {&optic.mesh};
+  if (optic.kind != optics::OpticKind::lens) return {&optic.mesh};
   return {&optic.mesh, &optic.back.mesh};
 }
 

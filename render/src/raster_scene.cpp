@@ -44,7 +44,7 @@ GpuLight gpu_light(const Light& light, const glm::dvec3& origin_mm) {
 }
 
 std::optional<RasterOptic> back_of(const optics::Optic& optic) {
-  if (optic.kind == optics::OpticKind::mirror) return std::nullopt;
+  if (optic.kind != optics::OpticKind::lens) return std::nullopt;
   return RasterOptic(optic.back.mesh);
 }
 
@@ -325,7 +325,7 @@ void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
   glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
   glEnable(GL_CULL_FACE);
   for (std::size_t i = 0; i < optics_.size(); ++i) {
-    if (pass.except == i || scene_.optics[i].kind == optics::OpticKind::lens) continue;
+    if (pass.except == i || scene_.optics[i].kind != optics::OpticKind::mirror) continue;
     if (std::find(pass.nested.begin(), pass.nested.end(), i) != pass.nested.end()) continue;
     set_mesh_origin(view, optics_[i]);
     set_vec3(kEmissive, glm::vec3(0));
