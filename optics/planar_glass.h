@@ -26,10 +26,10 @@ struct PlanarFace {
 /// Source: Born & Wolf, Principles of Optics, 7th ed., 7.6.1, summed without phases.
 [[nodiscard]] double plate_reflectance(double border);
 
-/// Where, measured from the point at which a ray of unit direction `d` meets the front of a plate, the line on
-/// which it leaves the plate crosses that front: -t (tan a - tan b) e, mm, with a and b the angles in air and
-/// glass and e the direction of `d` along the plate. `normal`: unit, of either sense; `ior` at least 1; `d`
-/// not along the plate. Source: Hecht 2017, 4.4 (Snell at two parallel borders).
+/// Where, measured from the point at which a ray of unit direction `d` meets the front of a plate, the line
+/// on which it leaves the plate crosses that front: -t (tan a - tan b) e, mm, with a and b the angles in air
+/// and glass and e the direction of `d` along the plate. `normal`: unit, of either sense; `ior` at least 1;
+/// `d` not along the plate. Source: Hecht 2017, 4.4 (Snell at two parallel borders).
 [[nodiscard]] glm::dvec3 plate_shift(const glm::dvec3& d, const glm::dvec3& normal, double ior,
                                      double thickness_mm);
 

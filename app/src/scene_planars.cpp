@@ -84,8 +84,8 @@ glm::dvec3 first_edge(const TomlTable& planar, const SceneContext& context, cons
   return {1, 0, 0};
 }
 
-optics::Optic make_planar(const TomlTable& planar, const SceneContext& context,
-                          const cad_import::Face& face, render::Scene& scene) {
+optics::Optic make_planar(const TomlTable& planar, const SceneContext& context, const cad_import::Face& face,
+                          render::Scene& scene) {
   const auto kind = planar.choice("kind", {"mirror", "refractor", "pane"});
   if (!kind) planar.fail_missing("kind", "mirror, refractor or pane");
   optics::Optic optic;

@@ -23,9 +23,11 @@ PlanarFace planar_face(const Optic& optic) {
     area += twice;
   }
   face.centre_mm = area > 0 ? origin + moment / area : origin;
-  const glm::dvec3 edge = optic.material.first_edge - glm::dot(optic.material.first_edge, face.normal) * face.normal;
+  const glm::dvec3 edge =
+      optic.material.first_edge - glm::dot(optic.material.first_edge, face.normal) * face.normal;
   const glm::dvec3 other = std::abs(face.normal.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  face.along = glm::length(edge) > 1e-6 ? glm::normalize(edge) : glm::normalize(glm::cross(face.normal, other));
+  face.along =
+      glm::length(edge) > 1e-6 ? glm::normalize(edge) : glm::normalize(glm::cross(face.normal, other));
   face.across = glm::cross(face.normal, face.along);
   return face;
 }

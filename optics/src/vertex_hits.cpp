@@ -103,7 +103,8 @@ VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& len
 
 std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
                                         double wavelength_nm, const glm::dvec3& eye_mm) {
-  if (lens.kind != OpticKind::lens) throw Error("", lens.name, "is no lens, and only lenses can be traced so");
+  if (lens.kind != OpticKind::lens)
+    throw Error("", lens.name, "is no lens, and only lenses can be traced so");
   std::vector<Arrival> arrivals;
   for (const auto& vertex : side_of(lens, entered).mesh->vertices)
     arrivals.push_back(arrival_from_eye(eye_mm, vertex.position_mm));

@@ -77,12 +77,8 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   result.stats.time_ms = {{"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   for (const optics::Optic& optic : scene_.optics)
-    result.stats.optics.push_back({optic.name,
-                                   optics::kind_name(optic.kind),
-                                   optic.mesh.vertices.size(),
-                                   0,
-                                   0,
-                                   {}});
+    result.stats.optics.push_back(
+        {optic.name, optics::kind_name(optic.kind), optic.mesh.vertices.size(), 0, 0, {}});
   return result;
 }
 

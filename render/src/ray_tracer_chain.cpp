@@ -193,8 +193,8 @@ std::size_t TracedChains::refract(const ChainLanes& from, const MetOptics& met, 
   double distance[kLanes] = {};
   std::size_t passes = 1;
   for (int i = 0; i < kLanes; ++i) {
-    const bool lens = met.optic[i] >= 0 &&
-                      scene_.optics[std::size_t(met.optic[i])].kind == optics::OpticKind::lens;
+    const bool lens =
+        met.optic[i] >= 0 && scene_.optics[std::size_t(met.optic[i])].kind == optics::OpticKind::lens;
     lanes.optic[i] = lens ? met.optic[i] : -1;
     if (!lens) continue;
     lanes.entered[i] = met.entered[i];

@@ -16,12 +16,12 @@
 namespace catoptra::render {
 
 /// Follows rays that have left an optic. A path goes on where it meets the reflecting side of a mirror,
-/// either side of a lens or planar glass, the optic that it has just left included, until RenderSettings::depth optics lie
-/// along it; at planar glass it goes on both ways. After that a mirror is a plain body of its reflectance,
-/// lenses and planar glass are absent, and the optic that
-/// was left last does not hide anything: what a scene of depth 1 shows in its optics. The dark side of a
-/// mirror is a plain body always, but an optic's own does not hide what it shows. Light splits into
-/// wavelengths at the first lens along the path that has several.
+/// either side of a lens or planar glass, the optic that it has just left included, until
+/// RenderSettings::depth optics lie along it; at planar glass it goes on both ways. After that a mirror is a
+/// plain body of its reflectance, lenses and planar glass are absent, and the optic that was left last does
+/// not hide anything: what a scene of depth 1 shows in its optics. The dark side of a mirror is a plain body
+/// always, but an optic's own does not hide what it shows. Light splits into wavelengths at the first lens
+/// along the path that has several.
 class TracedChains {
  public:
   static constexpr int kLanes = LeftOptics::kLanes;

@@ -41,8 +41,8 @@ std::size_t TracedChains::pass_glass(const ChainLanes& from, const MetOptics& me
                                      Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   int glass[kLanes];
   for (int i = 0; i < kLanes; ++i)
-    glass[i] = met.optic[i] >= 0 && is_planar_glass(scene_.optics[std::size_t(met.optic[i])]) ? met.optic[i]
-                                                                                             : -1;
+    glass[i] =
+        met.optic[i] >= 0 && is_planar_glass(scene_.optics[std::size_t(met.optic[i])]) ? met.optic[i] : -1;
   MetLanes at{}, tilted{};
   planars_.meet(from.beams, glass, at);
   planars_.meet_tilted(from.beams, glass, from.sample, tilted);
@@ -93,7 +93,8 @@ void TracedChains::add_surfaces(const ChainLanes& from, const MetOptics& met,
   int lit[kLanes];
   bool any = false;
   for (int i = 0; i < kLanes; ++i) {
-    const bool here = met.optic[i] >= 0 && scene_.optics[std::size_t(met.optic[i])].material.material_alpha > 0;
+    const bool here =
+        met.optic[i] >= 0 && scene_.optics[std::size_t(met.optic[i])].material.material_alpha > 0;
     lit[i] = here ? met.optic[i] : -1;
     any |= here;
   }

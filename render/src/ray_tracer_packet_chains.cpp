@@ -96,8 +96,7 @@ std::size_t PacketTracer::follow_planars(const CameraRays& camera, const PixelPa
     if (met.optic[i] >= 0) met.distance[i] = float(stretch[i] * double(met.distance[i]));
   }
   ChainEnds ends;
-  const std::size_t rays =
-      chains_.follow(from, met, chains_.depth(), p.color, geometry ? &ends : nullptr);
+  const std::size_t rays = chains_.follow(from, met, chains_.depth(), p.color, geometry ? &ends : nullptr);
   for (int i = 0; i < kLanes; ++i) {
     if (met.optic[i] < 0) continue;
     p.traced[i] = true;

@@ -180,7 +180,8 @@ void TracedPlanars::pass(const BeamLanes& beams, const MetLanes& at, const int (
     if (optic[i] < 0) continue;
     const optics::Optic& glass = scene_.optics[std::size_t(optic[i])];
     const bool plate = glass.kind == optics::OpticKind::pane;
-    const double along = glm::dot(beams.direction.at(i), at.normal.at(i)), cosine = std::min(1.0, std::abs(along));
+    const double along = glm::dot(beams.direction.at(i), at.normal.at(i)),
+                 cosine = std::min(1.0, std::abs(along));
     const bool leaves = !plate && along > 0;  // from behind a refractor: out of the glass
     const double from = leaves ? glass.material.ior : 1, to = leaves ? 1 : glass.material.ior;
     border[i] = optics::fresnel_dielectric(cosine, from, to).unpolarised;

@@ -92,7 +92,7 @@ class ShadingScene {
   std::vector<ShadeMaterial> materials_;
   std::vector<std::vector<LinearTexture>> linear_;
   std::vector<std::uint32_t> optic_material_;  ///< of the reflecting side; the other side's and
-                                              ///< that of PlanarMaterial::color follow it
+                                               ///< that of PlanarMaterial::color follow it
 };
 
 }  // namespace catoptra::render

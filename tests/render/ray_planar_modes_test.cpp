@@ -14,8 +14,8 @@ using optics::OpticKind;
 
 constexpr int kWidth = 96, kHeight = 72;
 
-/// A pane, a refractor, a two-sided mirror seen from behind and one-sided glass seen from behind, side by side
-/// before a wall of boxes.
+/// A pane, a refractor, a two-sided mirror seen from behind and one-sided glass seen from behind, side by
+/// side before a wall of boxes.
 render::Scene four_kinds() {
   render::Scene scene = dark_scene(3);
   scene.environment.color = {0.3f, 0.4f, 0.5f};
@@ -78,7 +78,9 @@ TEST_P(PlanarModes, ShowWhatTheRayTracerShows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracing, PlanarModes, testing::Values(render::Mode::hybrid, render::Mode::exact),
-                         [](const auto& mode) { return mode.param == render::Mode::exact ? "Exact" : "Hybrid"; });
+                         [](const auto& mode) {
+                           return mode.param == render::Mode::exact ? "Exact" : "Hybrid";
+                         });
 
 // All samples at once and one by one give the same picture, tilts of rough faces included.
 TEST(PlanarModesRough, AccumulatedSamplesAreTheSamePicture) {

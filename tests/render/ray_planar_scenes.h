@@ -26,12 +26,19 @@ inline std::size_t middle_of(int size) {
 /// A camera before the origin, at `angle_rad` from +z (below 0: or -z, with angles beyond pi / 2) in the
 /// plane x = 0, that looks at the origin.
 inline render::Camera camera_at_angle(double angle_rad, double distance_mm, double fov_rad = 0.02) {
-  return {distance_mm * glm::dvec3(0, std::sin(angle_rad), std::cos(angle_rad)), {0, 0, 0}, {1, 0, 0},
-          fov_rad, {5, 5}};
+  return {distance_mm * glm::dvec3(0, std::sin(angle_rad), std::cos(angle_rad)),
+          {0, 0, 0},
+          {1, 0, 0},
+          fov_rad,
+          {5, 5}};
 }
 
 inline double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
+}
+
+inline double degrees_of(double angle_rad) {
+  return angle_rad * 180 / std::numbers::pi;
 }
 
 }  // namespace catoptra::test
