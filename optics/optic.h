@@ -1,4 +1,5 @@
-// A mirror, lens or planar glass as the optics see it: exact faces, their mesh, and what becomes of the light.
+// A mirror, lens or planar glass as the optics see it: exact faces, their mesh, and what becomes of the
+// light.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -25,15 +26,16 @@ struct OpticSide {
 /// What a planar optic of the surroundings is made of (docs/decisions/0015-planar-optics-and-light.md says
 /// what each value does to a ray).
 struct PlanarMaterial {
-  double ior = 1.5;         ///< glass: behind the face (against its normal) over before it, 1 .. 5
-  double thickness_mm = 0;  ///< pane
-  glm::vec3 tint{1};        ///< glass: factor of the light that passes, linear RGB, 0 .. 1
-  double translucency = 0;  ///< 0 clear .. 1 fog: share of fog over 1 m behind the glass
+  double ior = 1.5;           ///< glass: behind the face (against its normal) over before it, 1 .. 5
+  double thickness_mm = 0;    ///< pane
+  glm::vec3 tint{1};          ///< glass: factor of the light that passes, linear RGB, 0 .. 1
+  double translucency = 0;    ///< 0 clear .. 1 fog: share of fog over 1 m behind the glass
   double material_alpha = 0;  ///< share of the lit surface in what is seen, 0 .. 1
   glm::vec3 color{0.8f};      ///< diffuse albedo of that surface, and of the fog in ambient light
   /// Standard deviations of the tilt of the normal, along the face's first edge and across it: what a rough
   /// surface reflects, by accumulated samples.
   glm::dvec2 roughness_rad{0};
+  glm::dvec3 first_edge{1, 0, 0};  ///< direction of that edge
 };
 
 struct Optic {

@@ -28,6 +28,7 @@ struct Camera {
   glm::dvec2 offset_px{0,
                        0};  ///< of the place in every pixel that is shown from its centre; +x right, +y down
   glm::dvec2 shift{0, 0};   ///< of the picture's middle from the axis, as tangents; +x right, +y up
+  int sample = 0;           ///< its number in the picture: by it rough optics are tilted
 
   bool operator==(const Camera&) const = default;
 };
@@ -55,7 +56,7 @@ struct RenderSettings {
   double max_error_px = 0;       ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
   double patch_fov_rad = 1.047;  ///< modes pvrr and exact: cut optics into patches that see no more
   int max_patches = 16;          ///< ... and no optic into more
-  int depth = 3;  ///< greatest number of optics along a path, at least 1
+  int depth = 3;                 ///< greatest number of optics along a path, at least 1
   double chord_mm = 0.01;
   double angle_rad = 0.0873;
   double texels_per_pixel = 1.5;

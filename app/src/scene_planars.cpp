@@ -1,4 +1,5 @@
 // The table [[planar]]: flat mirrors, refractors and panes of the surroundings.
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "app/src/mirror_faces.h"
@@ -68,8 +69,23 @@ void read_material(const TomlTable& planar, const SceneContext& context, optics:
     material.roughness_rad = glm::radians(glm::dvec2((*rough)[0], (*rough)[1]));
 }
 
-optics::Optic make_planar(const TomlTable& planar, const SceneContext& context,
-                          const cad_import::Face& face, render::Scene& scene) {
+/// From the first corner to the second, or along the first edge of a file's face.
+glm::dvec3 first_edge(const TomlTable& planar, const SceneContext& context, const cad_import::Face& face) {
+  if (planar.has("corners")) {
+    const auto corners = read_corners(planar, context);
+    return glm::normalize(corners[1] - corners[0]);
+  }
+  for (const auto& loop : face.loops)
+    for (const auto& edge : loop.edges) {
+      if (!loop.outer || edge.degenerate) continue;
+      const glm::dvec3 way = edge.curve->point(edge.t_end) - edge.curve->point(edge.t_begin);
+      if (glm::length(way) > 0) return glm::normalize(edge.reversed ? -way : way);
+    }
+  return {1, 0, 0};
+}
+
+optics::Optic make_planar(const TomlTable& planar, const SceneContext& context, const cad_import::Face& face,
+                          render::Scene& scene) {
   const auto kind = planar.choice("kind", {"mirror", "refractor", "pane"});
   if (!kind) planar.fail_missing("kind", "mirror, refractor or pane");
   optics::Optic optic;
@@ -81,6 +97,7 @@ optics::Optic make_planar(const TomlTable& planar, const SceneContext& context,
   optic.two_sided = optic.kind == optics::OpticKind::mirror && !optic.one_sided;
   if (const auto reflectance = read_reflectance(planar)) optic.reflectance = *reflectance;
   read_material(planar, context, optic);
+  optic.material.first_edge = first_edge(planar, context, face);
   optic.faces.push_back(face);
   auto meshed = tessellate::tessellate_optic(optic.faces, {});
   for (const auto& unmeshed : meshed.unmeshed)

@@ -88,7 +88,7 @@ double length_of(const std::vector<glm::dvec3>& chain) {
 }  // namespace
 
 MirrorGlass::MirrorGlass(const Optic& mirror, const glm::dvec3& up) : optic_(mirror) {
-  if (mirror.kind != OpticKind::mirror) throw Error("", mirror.name, "is a lens, not a mirror");
+  if (mirror.kind != OpticKind::mirror) throw Error("", mirror.name, "is no mirror");
   if (mirror.mesh.triangles.empty()) throw Error("", mirror.name, "has no surface");
   const AreaCenter area = center_of_area(mirror);
   const auto& start = mirror.mesh.vertices[area.nearest_vertex];

@@ -101,6 +101,7 @@ Optic placed(const Optic& own, const Placement& placement) {
   if (placement == Placement()) return optic;
   place(optic.faces, optic.mesh, placement);
   place(optic.back.faces, optic.back.mesh, placement);
+  optic.material.first_edge = placement.direction(own.material.first_edge);
   return optic;
 }
 

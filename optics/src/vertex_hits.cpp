@@ -65,7 +65,7 @@ VertexHit reflect_vertex(const tessellate::OpticVertex& vertex, const Optic& mir
 
 std::vector<VertexHit> reflect_vertices(const Optic& mirror, const glm::dvec3& eye_mm) {
   if (mirror.kind != OpticKind::mirror)
-    throw Error("", mirror.name, "is a lens, and only mirrors can be traced so");
+    throw Error("", mirror.name, "is no mirror, and only mirrors can be traced so");
   std::vector<VertexHit> hits;
   hits.reserve(mirror.mesh.vertices.size());
   for (const tessellate::OpticVertex& vertex : mirror.mesh.vertices)
@@ -104,7 +104,8 @@ VertexHit refract_vertex(const tessellate::OpticVertex& vertex, const Optic& len
 
 std::vector<VertexHit> refract_vertices(const Optic& lens, const LensTracer& tracer, LensSide entered,
                                         double wavelength_nm, const glm::dvec3& eye_mm) {
-  if (lens.kind != OpticKind::lens) throw Error("", lens.name, "is a mirror, and light does not pass it");
+  if (lens.kind != OpticKind::lens)
+    throw Error("", lens.name, "is no lens, and only lenses can be traced so");
   std::vector<Arrival> arrivals;
   for (const auto& vertex : side_of(lens, entered).mesh->vertices)
     arrivals.push_back(arrival_from_eye(eye_mm, vertex.position_mm));

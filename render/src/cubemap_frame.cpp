@@ -77,12 +77,8 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   result.stats.time_ms = {{"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   for (const optics::Optic& optic : scene_.optics)
-    result.stats.optics.push_back({optic.name,
-                                   optics::kind_name(optic.kind),
-                                   optic.mesh.vertices.size(),
-                                   0,
-                                   0,
-                                   {}});
+    result.stats.optics.push_back(
+        {optic.name, optics::kind_name(optic.kind), optic.mesh.vertices.size(), 0, 0, {}});
   return result;
 }
 
@@ -164,6 +160,7 @@ void CubemapFrame::draw_lens(std::size_t optic, const RasterTarget& target, cons
 
 void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, const RasterView& camera,
                               bool geometry) {
+  if (optics::is_planar_glass(scene_.optics[optic])) return;
   if (scene_.optics[optic].kind == optics::OpticKind::lens) {
     draw_lens(optic, target, camera, geometry);
     return;

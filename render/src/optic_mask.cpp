@@ -1,10 +1,20 @@
 #include "render/src/optic_mask.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+
+#include "optics/planar_glass.h"
 
 namespace catoptra::render {
 namespace {
+
+/// Whether the eye, in the optic's frame, is behind glass that works from one side alone.
+bool is_absent(const optics::Optic& optic, const glm::dvec3& own_eye_mm) {
+  if (!optics::is_planar_glass(optic) || !optic.one_sided) return false;
+  const optics::PlanarFace face = optics::planar_face(optic);
+  return glm::dot(own_eye_mm - face.centre_mm, face.normal) <= 0;
+}
 
 /// `mask` is 255 where an optic covers the pixel, 0 where none does, and between where it does in part.
 std::vector<std::uint8_t> with_edges(const std::vector<std::uint8_t>& mask, int width, int height) {
@@ -78,6 +88,7 @@ void OpticMask::draw_surfaces(const RasterView& view) const {
   glUseProgram(program_.id());
   for (std::size_t i = 0; i < scene_.optics.size(); ++i) {
     const optics::Optic& optic = scene_.optics[i];
+    if (is_absent(optic, raster_.optic(i).placement().own_point(view.origin_mm))) continue;
     const RasterOptic& seen =
         optic.kind == optics::OpticKind::lens
             ? raster_.side(

@@ -10,6 +10,7 @@ namespace catoptra::render {
 void PvrrDraw::draw(const PvrrOptic& drawn, std::size_t index, const RasterTarget& target,
                     const RasterView& camera, glm::dvec2 offset_px, const Look& look) {
   const optics::Optic& optic = scene_.optics[index];
+  if (optics::is_planar_glass(optic)) return;
   if (optic.kind == optics::OpticKind::lens) {
     const LensLook lens_look = !look.in_map   ? LensLook::map
                                : look.clipped ? LensLook::nested_clipped

@@ -92,7 +92,11 @@ void PvrrOptic::update(const RasterView& camera, const FrameOptions& options, do
   traced_rays_ = scene_rays_ = refinement_rays_ = 0;
   multisample_ = options.multisample;
   const RasterView view = in_own_frame(camera, placement_);
-  if (!options.reuse_static || !rays_hold(view.origin_mm)) trace(view.origin_mm);
+  // Planar glass has no map yet: not there in pvrr, traced in the other modes.
+  if (optics::is_planar_glass(optic_))
+    faces_eye_ = false;
+  else if (!options.reuse_static || !rays_hold(view.origin_mm))
+    trace(view.origin_mm);
   if (!faces_eye_) {
     map_.set_empty(options.geometry);
     drawn_.reset();

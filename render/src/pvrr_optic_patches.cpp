@@ -152,7 +152,7 @@ std::vector<OverlayLine> PvrrOptic::viewpoint_lines() const {
 }
 
 const tessellate::OpticArrays& PvrrOptic::tessellated_mesh() const {
-  return optic_.kind == OpticKind::mirror ? optic_.mesh : *optics::side_of(optic_, lens_paths_.entered).mesh;
+  return optic_.kind != OpticKind::lens ? optic_.mesh : *optics::side_of(optic_, lens_paths_.entered).mesh;
 }
 
 const tessellate::OpticArrays& PvrrOptic::cut_mesh() const {
@@ -165,7 +165,7 @@ const tessellate::OpticArrays& PvrrOptic::seen_mesh() const {
 
 const RasterOptic& PvrrOptic::seen_surface() const {
   if (own_surface_ && faces_eye_) return *own_surface_;
-  return optic_.kind == OpticKind::mirror ? raster_.optic(index_) : raster_.side(index_, lens_paths_.entered);
+  return optic_.kind != OpticKind::lens ? raster_.optic(index_) : raster_.side(index_, lens_paths_.entered);
 }
 
 std::span<const std::uint32_t> PvrrOptic::patches_of_seen() const {

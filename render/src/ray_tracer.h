@@ -14,8 +14,8 @@
 
 namespace catoptra::render {
 
-/// What stands for an optic in the shared ray scene: a mirror's mesh; nothing for a lens, which other optics
-/// do not show and which the tracer itself keeps apart.
+/// What stands for an optic in the shared ray scene: a mirror's mesh; nothing for a lens or planar glass,
+/// which let light pass and which the tracer itself keeps apart.
 [[nodiscard]] const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic);
 
 /// Objects of the shared ray scene: surroundings 0 .. surroundings.size() - 1, then the optics in order.

@@ -26,35 +26,15 @@ double reflecting_sense(const optics::Optic& mirror) {
   return mirror.flip ? -1 : 1;
 }
 
+/// Whether a ray with that product of its direction and the triangle's normal meets a side that does not
+/// reflect.
+bool is_dark_side(const optics::Optic& mirror, float facing) {
+  return !mirror.two_sided && (facing < 0) == mirror.flip;
+}
+
 float facing(const optics::RayPacket16& p, int i) {
   return p.normal_x[i] * p.direction_x[i] + p.normal_y[i] * p.direction_y[i] +
          p.normal_z[i] * p.direction_z[i];
-}
-
-/// Rays for queries along the beams of the active lanes.
-void load_rays(ChainLanes& lanes) {
-  for (int i = 0; i < kLanes; ++i) {
-    const bool active = lanes.left.active[i];
-    const glm::dvec3 origin = active ? lanes.beams.point.at(i) : glm::dvec3(0),
-                     direction = active ? lanes.beams.direction.at(i) : glm::dvec3(1, 0, 0);
-    lanes.rays.origin_x[i] = float(origin.x);
-    lanes.rays.origin_y[i] = float(origin.y);
-    lanes.rays.origin_z[i] = float(origin.z);
-    lanes.rays.direction_x[i] = float(direction.x);
-    lanes.rays.direction_y[i] = float(direction.y);
-    lanes.rays.direction_z[i] = float(direction.z);
-    lanes.rays.t_min[i] = 0;
-    lanes.rays.t_max[i] = active ? std::numeric_limits<float>::infinity() : -1.0f;
-  }
-}
-
-/// Lane `i` leaves optic `optic`, the next one on its path.
-void set_left(const ChainLanes& from, int i, int optic, optics::LensSide side, ChainLanes& to) {
-  to.left.active[i] = true;
-  to.left.optic[i] = optic;
-  to.left.side[i] = side;
-  to.bounces[i] = std::uint8_t(from.bounces[i] + 1);
-  to.path[i] = path_after(from.path[i], optic);
 }
 
 /// What the lanes show if nothing more happens to them.
@@ -88,8 +68,8 @@ void write_blocked_end(const ChainLanes& from, int i, const MetLanes& entry, Cha
 }  // namespace
 
 TracedChains::TracedChains(const Scene& scene, const optics::RayScene& rays, const ShadingScene& shading,
-                           const TracedLenses& lenses)
-    : scene_(scene), rays_(rays), shading_(shading), lenses_(lenses) {
+                           const TracedLenses& lenses, const TracedPlanars& planars)
+    : scene_(scene), rays_(rays), shading_(shading), lenses_(lenses), planars_(planars) {
   mirrors_.resize(scene.optics.size());
   own_sine_.assign(scene.optics.size(), -1);
   for (std::size_t i = 0; i < scene.optics.size(); ++i) optic_changed(i);
@@ -116,7 +96,7 @@ bool TracedChains::find_next(const optics::RayPacket16& hits, const LeftOptics& 
     if (by_mirror && left.sees_own[i]) own = left.optic[i];
     if (hits.object[i] == optics::kNoHit || hits.object[i] < first_optic) continue;
     const int optic = int(hits.object[i] - first_optic);
-    if ((facing(hits, i) < 0) == scene_.optics[std::size_t(optic)].flip) continue;  // the dark side
+    if (is_dark_side(scene_.optics[std::size_t(optic)], facing(hits, i))) continue;
     found = true;
     met.optic[i] = optic;
     met.entered[i] = optics::LensSide::front;
@@ -136,7 +116,8 @@ bool TracedChains::find_next(const optics::RayPacket16& hits, const LeftOptics& 
                        reflecting_sense(optic)};
     found |= find_own(side, int(mirror), optics::LensSide::front, hits, asked, met);
   }
-  return lenses_.find_next(hits, left, met) || found;
+  found |= lenses_.find_next(hits, left, met);
+  return planars_.find_next(hits, left, met) || found;
 }
 
 void TracedChains::meet_mirrors(const BeamLanes& beams, const MetOptics& met, MetLanes& at) const {
@@ -164,20 +145,26 @@ void TracedChains::meet_mirrors(const BeamLanes& beams, const MetOptics& met, Me
 
 std::size_t TracedChains::follow(const ChainLanes& from, const MetOptics& met, int depth,
                                  Float4 (&radiance)[kLanes], ChainEnds* ends) const {
-  bool any_mirror = false, any_lens = false;
+  bool any_mirror = false, any_lens = false, any_glass = false;
   for (const int optic : met.optic) {
     if (optic < 0) continue;
-    (mirrors_[std::size_t(optic)] ? any_mirror : any_lens) = true;
+    const optics::Optic& next = scene_.optics[std::size_t(optic)];
+    (is_planar_glass(next) ? any_glass : mirrors_[std::size_t(optic)] ? any_mirror : any_lens) = true;
   }
-  return (any_mirror ? reflect(from, met, depth, radiance, ends) : 0) +
-         (any_lens ? refract(from, met, depth, radiance, ends) : 0);
+  const std::size_t rays = (any_mirror ? reflect(from, met, depth, radiance, ends) : 0) +
+                           (any_lens ? refract(from, met, depth, radiance, ends) : 0) +
+                           (any_glass ? pass_glass(from, met, depth, radiance, ends) : 0);
+  if (planars_.any_surface()) add_surfaces(from, met, radiance);
+  return rays;
 }
 
 std::size_t TracedChains::reflect(const ChainLanes& from, const MetOptics& met, int depth,
                                   Float4 (&radiance)[kLanes], ChainEnds* ends) const {
   MetLanes at;
   meet_mirrors(from.beams, met, at);
+  if (planars_.any_special()) planars_.meet_tilted(from.beams, met.optic, from.sample, at);
   ChainLanes to{};
+  to.sample = from.sample;
   reflect_beams(from.beams, at, to.beams);
   for (int i = 0; i < kLanes; ++i) {
     to.left.optic[i] = -1;
@@ -206,7 +193,8 @@ std::size_t TracedChains::refract(const ChainLanes& from, const MetOptics& met, 
   double distance[kLanes] = {};
   std::size_t passes = 1;
   for (int i = 0; i < kLanes; ++i) {
-    const bool lens = met.optic[i] >= 0 && !mirrors_[std::size_t(met.optic[i])];
+    const bool lens =
+        met.optic[i] >= 0 && scene_.optics[std::size_t(met.optic[i])].kind == optics::OpticKind::lens;
     lanes.optic[i] = lens ? met.optic[i] : -1;
     if (!lens) continue;
     lanes.entered[i] = met.entered[i];
@@ -244,6 +232,7 @@ std::size_t TracedChains::refract_pass(const ChainLanes& from, const LensLanes& 
   RefractedLanes out;
   lenses_.refract(lanes, indices, out);
   ChainLanes to{};
+  to.sample = from.sample;
   to.beams = out.beams;
   to.rays = out.rays;
   to.offset_mm = optics::kSelfHitDistance_mm;
@@ -277,9 +266,12 @@ std::size_t TracedChains::leave(ChainLanes& to, int depth, Float4 (&seen)[kLanes
   for (const bool active : to.left.active) rays += active ? 1 : 0;
   shade(to, seen);
   if (ends) write_ends(to, *ends);
+  std::copy_n(to.rays.t_max, kLanes, to.next_mm);
   MetOptics met;
-  if (depth > 0 && find_next(to.rays, to.left, met)) rays += follow(to, met, depth, seen, ends);
-  return rays;
+  if (depth <= 0 || !find_next(to.rays, to.left, met)) return rays;
+  for (int i = 0; i < kLanes; ++i)
+    if (met.optic[i] >= 0) to.next_mm[i] = met.distance[i];
+  return rays + follow(to, met, depth, seen, ends);
 }
 
 void TracedChains::shade(const ChainLanes& lanes, Float4 (&seen)[kLanes]) const {

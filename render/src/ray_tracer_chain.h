@@ -10,23 +10,25 @@
 #include "render/scene.h"
 #include "render/src/ray_tracer_chain_lanes.h"
 #include "render/src/ray_tracer_lens.h"
+#include "render/src/ray_tracer_planar.h"
 #include "render/src/shading.h"
 
 namespace catoptra::render {
 
-/// Follows rays that have left an optic. A path goes on where it meets the reflecting side of a mirror or
-/// either side of a lens, the optic that it has just left included, until RenderSettings::depth optics lie
-/// along it. After that a mirror is a plain body of its reflectance, lenses are absent, and the optic that
-/// was left last does not hide anything: what a scene of depth 1 shows in its optics. The dark side of a
-/// mirror is a plain body always, but an optic's own does not hide what it shows. Light splits into
-/// wavelengths at the first lens along the path that has several.
+/// Follows rays that have left an optic. A path goes on where it meets the reflecting side of a mirror,
+/// either side of a lens or planar glass, the optic that it has just left included, until
+/// RenderSettings::depth optics lie along it; at planar glass it goes on both ways. After that a mirror is a
+/// plain body of its reflectance, lenses and planar glass are absent, and the optic that was left last does
+/// not hide anything: what a scene of depth 1 shows in its optics. The dark side of a mirror is a plain body
+/// always, but an optic's own does not hide what it shows. Light splits into wavelengths at the first lens
+/// along the path that has several.
 class TracedChains {
  public:
   static constexpr int kLanes = LeftOptics::kLanes;
 
-  /// Keeps references to all four, which must outlive it.
+  /// Keeps references to all five, which must outlive it.
   TracedChains(const Scene& scene, const optics::RayScene& rays, const ShadingScene& shading,
-               const TracedLenses& lenses);
+               const TracedLenses& lenses, const TracedPlanars& planars);
 
   void optic_changed(std::size_t index);
 
@@ -57,6 +59,9 @@ class TracedChains {
                       ChainEnds* ends) const;
   std::size_t refract(const ChainLanes& from, const MetOptics& met, int depth, Float4 (&radiance)[kLanes],
                       ChainEnds* ends) const;
+  std::size_t pass_glass(const ChainLanes& from, const MetOptics& met, int depth, Float4 (&radiance)[kLanes],
+                         ChainEnds* ends) const;
+  void add_surfaces(const ChainLanes& from, const MetOptics& met, Float4 (&radiance)[kLanes]) const;
   std::size_t refract_pass(const ChainLanes& from, const LensLanes& lanes, std::size_t pass, int depth,
                            Float4 (&radiance)[kLanes], ChainEnds* ends) const;
   std::size_t leave(ChainLanes& to, int depth, Float4 (&seen)[kLanes], ChainEnds* ends) const;
@@ -72,7 +77,8 @@ class TracedChains {
   const optics::RayScene& rays_;
   const ShadingScene& shading_;
   const TracedLenses& lenses_;
-  std::vector<std::unique_ptr<Mirror>> mirrors_;  ///< by optic; null: a lens
+  const TracedPlanars& planars_;
+  std::vector<std::unique_ptr<Mirror>> mirrors_;  ///< by optic; null: no mirror
   std::vector<double> own_sine_;                  ///< by optic, of mirrors
   bool possible_ = false;
 };

@@ -11,7 +11,7 @@
 
 namespace catoptra::render {
 
-/// The optic that each lane has left last.
+/// The optic that each lane has left last; of rays from the eye none.
 struct LeftOptics {
   static constexpr int kLanes = LaneVectors::kLanes;
   bool active[kLanes];
@@ -40,6 +40,8 @@ struct ChainLanes {
   int wavelength[kLanes];    ///< number in the table of TracedLenses; -1: of all wavelengths together
   std::uint8_t bounces[kLanes];
   std::uint32_t path[kLanes];  ///< see path_after()
+  float next_mm[kLanes];       ///< once followed: from the packet's origins to what is met next
+  int sample = 0;              ///< of the picture: see normal_pair()
 };
 
 /// What lanes show at last: geometry as in Frame, and the unit normal of the triangle met.

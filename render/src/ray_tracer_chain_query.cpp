@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "optics/exact_hit.h"
+#include "render/frame.h"
 
 namespace catoptra::render {
 namespace {
@@ -40,6 +41,30 @@ bool is_exact(const OwnSide& own, const optics::RayPacket16& query, int i) {
 }
 
 }  // namespace
+
+void load_rays(ChainLanes& lanes) {
+  for (int i = 0; i < kLanes; ++i) {
+    const bool active = lanes.left.active[i];
+    const glm::dvec3 origin = active ? lanes.beams.point.at(i) : glm::dvec3(0),
+                     direction = active ? lanes.beams.direction.at(i) : glm::dvec3(1, 0, 0);
+    lanes.rays.origin_x[i] = float(origin.x);
+    lanes.rays.origin_y[i] = float(origin.y);
+    lanes.rays.origin_z[i] = float(origin.z);
+    lanes.rays.direction_x[i] = float(direction.x);
+    lanes.rays.direction_y[i] = float(direction.y);
+    lanes.rays.direction_z[i] = float(direction.z);
+    lanes.rays.t_min[i] = 0;
+    lanes.rays.t_max[i] = active ? std::numeric_limits<float>::infinity() : -1.0f;
+  }
+}
+
+void set_left(const ChainLanes& from, int i, int optic, optics::LensSide side, ChainLanes& to) {
+  to.left.active[i] = true;
+  to.left.optic[i] = optic;
+  to.left.side[i] = side;
+  to.bounces[i] = std::uint8_t(from.bounces[i] + 1);
+  to.path[i] = path_after(from.path[i], optic);
+}
 
 void copy_hit(const optics::RayPacket16& from, int i, optics::RayPacket16& to) {
   to.origin_x[i] = from.origin_x[i];

@@ -11,6 +11,12 @@
 
 namespace catoptra::render {
 
+/// Rays for queries along the beams of the active lanes.
+void load_rays(ChainLanes& lanes);
+
+/// Lane `i` leaves optic `optic`, the next one on its path.
+void set_left(const ChainLanes& from, int i, int optic, optics::LensSide side, ChainLanes& to);
+
 /// One lane's ray and hit.
 void copy_hit(const optics::RayPacket16& from, int lane, optics::RayPacket16& to);
 

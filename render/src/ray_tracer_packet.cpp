@@ -97,7 +97,8 @@ PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, co
       rays_(rays),
       shading_(scene, textures),
       lenses_(scene),
-      chains_(scene, rays, shading_, lenses_) {
+      planars_(scene),
+      chains_(scene, rays, shading_, lenses_, planars_) {
   for (const optics::Optic& optic : scene.optics) {
     const bool mirror = optic.kind == optics::OpticKind::mirror;
     mirrors_.push_back(mirror ? std::make_unique<ExactMirror>(optic) : nullptr);
@@ -109,10 +110,12 @@ void PacketTracer::optic_changed(std::size_t index) {
   shading_.optic_changed(index);
   if (mirrors_[index]) mirrors_[index] = std::make_unique<ExactMirror>(scene_.optics[index]);
   lenses_.optic_changed(index);
+  planars_.optic_changed(index);
   chains_.optic_changed(index);
 }
 
-/// Lanes that a lens stands before the nearest hit of keep none: refract() gives them their colour.
+/// Lanes that a lens or planar glass stands before the nearest hit of keep none: refract() and
+/// follow_planars() give them their colour.
 void PacketTracer::primary(const PacketView& view, const PixelPacket& pixels, glm::dvec2 offset,
                            std::uint32_t mask, Packet& p) const {
   const CameraRays& camera = view.camera;
@@ -134,6 +137,45 @@ void PacketTracer::primary(const PacketView& view, const PixelPacket& pixels, gl
   }
   rays_.intersect16(p.first, mask, true);
   lenses_.find(view.entered, p.first, p.lens);
+  find_planars(p);
+}
+
+/// Whether the hit is on a side of a mirror that reflects.
+bool PacketTracer::reflects(const optics::RayPacket16& hits, int i) const {
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
+  if (hits.object[i] == optics::kNoHit || hits.object[i] < first_optic) return false;
+  const float facing = hits.normal_x[i] * hits.direction_x[i] + hits.normal_y[i] * hits.direction_y[i] +
+                       hits.normal_z[i] * hits.direction_z[i];
+  const optics::Optic& optic = scene_.optics[hits.object[i] - first_optic];
+  return optic.two_sided || (facing < 0) != optic.flip;
+}
+
+/// The lanes that show glass, or mirrors which do more than reflect, and takes those hits away.
+void PacketTracer::find_planars(Packet& p) const {
+  p.any_planar = false;
+  if (!planars_.any_special()) return;
+  const auto first_optic = static_cast<std::uint32_t>(scene_.surroundings.size());
+  LeftOptics none;
+  for (int i = 0; i < kLanes; ++i) {
+    p.planar.optic[i] = none.optic[i] = -1;
+    none.active[i] = p.first.t_max[i] >= p.first.t_min[i];
+    if (!none.active[i] || !reflects(p.first, i)) continue;
+    const int optic = int(p.first.object[i] - first_optic);
+    if (!planars_.is_special(std::size_t(optic))) continue;
+    p.planar.optic[i] = optic;
+    p.planar.distance[i] = p.first.t_max[i];
+    p.planar.u[i] = p.first.u[i];
+    p.planar.v[i] = p.first.v[i];
+    p.planar.triangle[i] = p.first.triangle[i];
+  }
+  (void)planars_.find_next(p.first, none, p.planar);
+  for (int i = 0; i < kLanes; ++i) {
+    if (p.planar.optic[i] < 0) continue;
+    p.any_planar = true;
+    p.first.t_max[i] = p.planar.distance[i];
+    p.first.object[i] = optics::kNoHit;
+    if (p.lens.any) p.lens.optic[i] = -1;
+  }
 }
 
 /// Finds the lanes that show a reflecting side. Returns whether there are any.
@@ -142,14 +184,8 @@ bool PacketTracer::find_mirrors(Packet& p) const {
   p.any_mirror = false;
   for (int i = 0; i < kLanes; ++i) {
     p.optic[i] = -1;
-    const std::uint32_t object = p.first.object[i];
-    if (object == optics::kNoHit || object < first_optic) continue;
-    const float facing = p.first.normal_x[i] * p.first.direction_x[i] +
-                         p.first.normal_y[i] * p.first.direction_y[i] +
-                         p.first.normal_z[i] * p.first.direction_z[i];
-    const int optic = int(object - first_optic);
-    if ((facing < 0) == scene_.optics[std::size_t(optic)].flip) continue;
-    p.optic[i] = optic;
+    if (!reflects(p.first, i)) continue;
+    p.optic[i] = int(p.first.object[i] - first_optic);
     p.any_mirror = true;
     p.mirror.triangle[i] = p.first.triangle[i];
     p.mirror.u[i] = p.first.u[i];
@@ -286,6 +322,7 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
   std::fill(std::begin(p.traced), std::end(p.traced), false);
   std::fill(std::begin(p.found.answers.found), std::end(p.found.answers.found), 0);
   const glm::dvec2 offset = sample_offset(sample, std::max(1, options.samples));
+  p.sample = camera.sample + sample;
   const bool all_optics = mapped && show_optics_alone(pixels, mapped->marks, frame);
   primary(view, pixels, offset, all_optics ? optics::kOptics : optics::kEverything, p);
   reflect(camera, p);
@@ -314,6 +351,7 @@ std::size_t PacketTracer::trace_sample(const PacketView& view, const FrameOption
     p.color[i] = mirrored ? tints_[std::size_t(p.optic[i])] * p.shade.radiance[i] : p.shade.radiance[i];
     rays += pixels.active[i] ? (mirrored ? 2u : 1u) : 0u;
   }
+  if (p.any_planar) rays += follow_planars(camera, pixels, p, geometry ? &frame : nullptr);
   return rays;
 }
 
@@ -348,6 +386,7 @@ std::size_t PacketTracer::trace_mapped(const PacketView& view, const FrameOption
     frame.color[at] = glm::vec4(c[0], c[1], c[2], 1);
     if (p.traced[i]) mapped.traced[at] = 1;
     mapped.owner[at] = p.lens.any && p.lens.optic[i] >= 0 ? p.lens.optic[i] : p.optic[i];
+    if (p.any_planar && p.planar.optic[i] >= 0) mapped.owner[at] = p.planar.optic[i];
   }
   return rays;
 }

@@ -10,6 +10,7 @@
 #include "render/src/ray_tracer_exact.h"
 #include "render/src/ray_tracer_lens.h"
 #include "render/src/ray_tracer_mapped.h"
+#include "render/src/ray_tracer_planar.h"
 #include "render/src/sampling.h"
 #include "render/src/shading.h"
 
@@ -69,6 +70,8 @@ class PacketTracer {
                Packet& p) const;
   void reflect(const CameraRays& camera, Packet& p) const;
   bool find_mirrors(Packet& p) const;
+  [[nodiscard]] bool reflects(const optics::RayPacket16& hits, int lane) const;
+  void find_planars(Packet& p) const;
   static void load_reflected(Packet& p);
   std::size_t trace_sample(const PacketView& view, const FrameOptions& options, const PixelPacket& pixels,
                            int sample, const MappedSample* mapped, Frame& frame, Packet& p) const;
@@ -82,6 +85,8 @@ class PacketTracer {
   // Paths of several optics; `geometry`, or null, has been written as if the first optic were the last.
   std::size_t follow_mirrors(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
                              Frame* geometry) const;
+  std::size_t follow_planars(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
+                             Frame* geometry) const;
   std::size_t follow_lenses(const PixelPacket& pixels, Packet& p, std::size_t sample, RefractedLanes& out,
                             Frame* geometry) const;
   std::size_t follow(const PixelPacket& pixels, const ChainLanes& from, const MetOptics& met,
@@ -92,8 +97,9 @@ class PacketTracer {
   const Scene& scene_;
   const optics::RayScene& rays_;
   ShadingScene shading_;
-  std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic; null: a lens
+  std::vector<std::unique_ptr<ExactMirror>> mirrors_;  ///< one per optic; null: no mirror
   TracedLenses lenses_;
+  TracedPlanars planars_;
   TracedChains chains_;
   std::vector<Float4> tints_;  ///< reflectance of each optic
 };

@@ -41,6 +41,7 @@ std::size_t PacketTracer::follow_mirrors(const CameraRays& camera, const PixelPa
   // The beams with all their differentials, which few packets need.
   ChainLanes from;
   set_first(left, from);
+  from.sample = p.sample;
   from.rays = p.second;
   BeamLanes eye;
   double stretch[kLanes];
@@ -74,12 +75,35 @@ std::size_t PacketTracer::follow_lenses(const PixelPacket& pixels, Packet& p, st
   if (!chains_.find_next(out.rays, left, met)) return 0;
   ChainLanes from;
   set_first(left, from);
+  from.sample = p.sample;
   from.beams = out.beams;
   from.rays = out.rays;
   from.offset_mm = optics::kSelfHitDistance_mm;
   for (int i = 0; i < kLanes; ++i)
     if (left.active[i]) from.wavelength[i] = lenses_.wavelength(std::size_t(left.optic[i]), sample);
   return follow(pixels, from, met, out.shade, p.traced, geometry);
+}
+
+std::size_t PacketTracer::follow_planars(const CameraRays& camera, const PixelPacket& pixels, Packet& p,
+                                         Frame* geometry) const {
+  ChainLanes from{};
+  from.sample = p.sample;
+  double stretch[kLanes];
+  aim_beams(camera, p.column, p.row, stretch, from.beams);
+  MetOptics met = p.planar;
+  for (int i = 0; i < kLanes; ++i) {
+    from.left.optic[i] = from.wavelength[i] = -1;
+    if (met.optic[i] >= 0) met.distance[i] = float(stretch[i] * double(met.distance[i]));
+  }
+  ChainEnds ends;
+  const std::size_t rays = chains_.follow(from, met, chains_.depth(), p.color, geometry ? &ends : nullptr);
+  for (int i = 0; i < kLanes; ++i) {
+    if (met.optic[i] < 0) continue;
+    p.traced[i] = true;
+    if (geometry) geometry->optic_id[index_of(pixels, i, *geometry)] = met.optic[i];
+  }
+  if (geometry) write_ends(pixels, met, ends, *geometry);
+  return rays;
 }
 
 std::size_t PacketTracer::follow(const PixelPacket& pixels, const ChainLanes& from, const MetOptics& met,

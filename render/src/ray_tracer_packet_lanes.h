@@ -13,6 +13,7 @@ inline std::size_t index_of(const PixelPacket& pixels, int lane, const Frame& fr
 
 /// All that is known of 16 pixels on their way.
 struct alignas(64) PacketTracer::Packet {
+  int sample = 0;  ///< of the picture: see normal_pair()
   optics::RayPacket16
       first;  ///< from the eye; directions have length 1 along the camera's axis, so t_max is a depth
   optics::RayPacket16 second;  ///< reflected; unit directions
@@ -23,6 +24,8 @@ struct alignas(64) PacketTracer::Packet {
   int optic[PixelPacket::kLanes];       ///< whose reflecting side the pixel shows; -1: none
   bool any_mirror;
   LensLanes lens;
+  MetOptics planar;  ///< planar optics that are followed from the eye on; set where there are any
+  bool any_planar;
   MapLanes found;                    ///< of the mirrored hits
   bool traced[PixelPacket::kLanes];  ///< an optic shows what maps do not know
   Float4 color[PixelPacket::kLanes];

@@ -52,6 +52,19 @@ namespace catoptra::render {
   return sign * radius * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
+/// Pair `sample` of a fixed sequence of standard normal numbers: the tilt of rough optics in that sample of a
+/// picture, in their standard deviations, along the first edge and across. Sample 0 has none, the others come
+/// in opposite pairs, so that an odd number of samples does not turn a picture. Box and Muller 1958, from two
+/// additive sequences (golden ratio, square root of two) that are not those of places in pixel and pupil.
+[[nodiscard]] inline glm::dvec2 normal_pair(int sample) {
+  if (sample == 0) return {0, 0};
+  const int pair = (sample + 1) / 2;
+  const double a = 0.5 + pair * 0.6180339887498949, b = 0.5 + pair * 0.4142135623730951;
+  const double radius = std::sqrt(-2 * std::log(1 - (a - std::floor(a)))),
+               angle = std::numbers::pi * (b - std::floor(b)), sign = sample % 2 == 1 ? 1 : -1;
+  return sign * radius * glm::dvec2(std::cos(angle), std::sin(angle));
+}
+
 /// The camera's axes in the world, unit. Throws catoptra::Error for a camera that has no picture.
 struct CameraAxes {
   glm::dvec3 right, up, forward;
@@ -71,6 +84,7 @@ struct CameraAxes {
 [[nodiscard]] inline Camera sample_camera(const Camera& camera, int index, int samples) {
   Camera of_sample = camera;
   of_sample.offset_px = sample_offset(index, samples);
+  of_sample.sample = index;
   if (!(camera.pupil_mm > 0)) return of_sample;
   const CameraAxes axes = camera_axes(camera);
   const glm::dvec2 place = 0.5 * camera.pupil_mm * pupil_point(index, samples);
@@ -88,6 +102,7 @@ struct CameraAxes {
 struct CameraRays {
   glm::dvec3 eye_mm, forward, corner, dx, dy;
   double pixel = 0;  ///< side of a pixel at unit distance along `forward`
+  int sample = 0;    ///< see Camera
 
   [[nodiscard]] glm::dvec3 direction(double column, double row) const {
     return corner + column * dx + row * dy;
@@ -99,6 +114,7 @@ struct CameraRays {
   const CameraAxes axes = camera_axes(camera);
   CameraRays rays;
   rays.eye_mm = camera.eye_mm;
+  rays.sample = camera.sample;
   rays.forward = axes.forward;
   rays.pixel = 2 * std::tan(0.5 * camera.fov_rad) / height;
   rays.dx = rays.pixel * axes.right;

@@ -111,6 +111,7 @@ ShadingScene::ShadingScene(const Scene& scene, const SceneTextures& textures)
     optic_material_.push_back(static_cast<std::uint32_t>(materials_.size()));
     materials_.push_back({float4(scene.optics[i].reflectance), Float4{}});
     materials_.push_back({float4(glm::vec3(kOpticBackAlbedo)), Float4{}});
+    materials_.push_back({float4(scene.optics[i].material.color), Float4{}});
     objects_.emplace_back();
     pack_optic(i);
   }
@@ -144,6 +145,7 @@ void ShadingScene::pack_optic(std::size_t index) {
   Object& object = objects_[scene_.surroundings.size() + index];
   object.optic = true;
   object.flip = optic.flip;
+  object.two_sided = optic.two_sided;
   object.triangles.resize(optic.mesh.triangles.size());
   for (std::size_t i = 0; i < object.triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -179,8 +181,8 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
     g.nx[i] = w * tri.normal[0].x + u * tri.normal[1].x + v * tri.normal[2].x;
     g.ny[i] = w * tri.normal[0].y + u * tri.normal[1].y + v * tri.normal[2].y;
     g.nz[i] = w * tri.normal[0].z + u * tri.normal[1].z + v * tri.normal[2].z;
-    const bool back = object.optic && from_behind != object.flip;
-    const ShadeMaterial& material = materials_[tri.material + (back ? 1u : 0u)];
+    const bool back = object.optic && !object.two_sided && from_behind != object.flip;
+    const ShadeMaterial& material = materials_[tri.material + (lanes.own_color[i] ? 2u : back ? 1u : 0u)];
     g.material[i] = &material;
     if (!material.texture) continue;
     const glm::vec2 e1 = tri.st[1] - tri.st[0], e2 = tri.st[2] - tri.st[0];

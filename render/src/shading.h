@@ -53,6 +53,7 @@ struct alignas(64) ShadeLanes {
   float footprint[kLanes];  ///< see shade()
   std::uint32_t object[kLanes], triangle[kLanes];
   bool active[kLanes];
+  bool own_color[kLanes] = {};  ///< of planar optics: show PlanarMaterial::color
   // Out: linear radiance towards the eye, RGB and nothing.
   Float4 radiance[kLanes];
 };
@@ -74,7 +75,7 @@ class ShadingScene {
  private:
   struct Object {
     std::vector<ShadeTriangle> triangles;
-    bool optic = false, flip = false;
+    bool optic = false, flip = false, two_sided = false;
   };
   struct Gathered;
 
@@ -90,7 +91,8 @@ class ShadingScene {
   std::vector<Object> objects_;
   std::vector<ShadeMaterial> materials_;
   std::vector<std::vector<LinearTexture>> linear_;
-  std::vector<std::uint32_t> optic_material_;  ///< of the reflecting side; the other side's follows it
+  std::vector<std::uint32_t> optic_material_;  ///< of the reflecting side; the other side's and
+                                               ///< that of PlanarMaterial::color follow it
 };
 
 }  // namespace catoptra::render
