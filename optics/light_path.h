@@ -32,7 +32,7 @@ using ConvexPolygon = std::vector<glm::dvec3>;
                                                   double radius_mm, int count);
 
 /// A planar optic as light meets it.
-struct PlanarFace {
+struct LightFace {
   std::size_t optic = 0;  ///< index among the scene's optics
   OpticKind kind = OpticKind::mirror;
   glm::dvec3 centroid_mm{0};          ///< of the area
@@ -47,7 +47,7 @@ struct PlanarFace {
 
 /// Of the optics that are planar, in their order. Throws Error where one's mesh does not lie in a plane or
 /// has no area.
-[[nodiscard]] std::vector<PlanarFace> planar_faces(std::span<const Optic> optics);
+[[nodiscard]] std::vector<LightFace> light_faces(std::span<const Optic> optics);
 
 /// A light as one planar optic sends it on, the light before it being the source or another virtual light.
 /// A point P is lit if the segment from P to `place` crosses `aperture` at Q, P to Q is free, and Q is lit by
@@ -70,7 +70,7 @@ struct VirtualLight {
 /// face is turned away (or seen edge-on) or out of the light's way, or met at the centroid beyond the
 /// critical angle. Every light comes after the one before it.
 [[nodiscard]] std::vector<VirtualLight> virtual_lights(const LightPlace& source,
-                                                       std::span<const PlanarFace> faces, int depth);
+                                                       std::span<const LightFace> faces, int depth);
 
 /// Number of planar optics on the way.
 [[nodiscard]] int step_count(std::span<const VirtualLight> lights, std::size_t index);
@@ -81,7 +81,7 @@ struct VirtualLight {
 
 /// What the face leaves of the light that meets it at an angle of incidence of cosine `cos_theta_i`, linear
 /// RGB: reflectance or Fresnel's R (pane: R'), or tint times Fresnel's 1 - R (pane: T').
-[[nodiscard]] glm::dvec3 face_share(const PlanarFace& face, const VirtualLight& light, double cos_theta_i);
+[[nodiscard]] glm::dvec3 face_share(const LightFace& face, const VirtualLight& light, double cos_theta_i);
 
 /// How light comes to a point.
 struct LightPath {
@@ -93,7 +93,7 @@ struct LightPath {
 /// The way of virtual light `index` to `point`; nullopt where the light does not reach it through its
 /// apertures. Takes no account of what stands in the way.
 [[nodiscard]] std::optional<LightPath> light_path(std::span<const VirtualLight> lights,
-                                                  std::span<const PlanarFace> faces, const LightPlace& source,
+                                                  std::span<const LightFace> faces, const LightPlace& source,
                                                   std::size_t index, const glm::dvec3& point);
 
 /// Irradiance of a surface of unit normal `normal` at `point` by a light of unit strength (1 across the beam

@@ -45,7 +45,7 @@ glm::dvec3 crossing(const glm::dvec4& plane, const LightPlace& place, const glm:
   return point - side_of(plane, point) / glm::dot(glm::dvec3(plane), way) * way;
 }
 
-double cosine_at(const PlanarFace& face, const LightPlace& place, const glm::dvec3& point) {
+double cosine_at(const LightFace& face, const LightPlace& place, const glm::dvec3& point) {
   return std::min(1.0, std::abs(glm::dot(face.normal, glm::normalize(towards(place, point)))));
 }
 
@@ -54,7 +54,7 @@ glm::dvec4 plane_through(const glm::dvec3& normal, const glm::dvec3& point) {
 }
 
 /// Indices of the light that comes from the side of `incoming` (unit normal of the face on that side).
-void set_indices(const PlanarFace& face, bool from_front, VirtualLight& light) {
+void set_indices(const LightFace& face, bool from_front, VirtualLight& light) {
   if (!(face.kind == OpticKind::refractor || face.kind == OpticKind::pane)) return;
   const bool out = face.kind == OpticKind::refractor && !from_front;  // a pane has air on both sides
   light.n_from = out ? face.ior : 1;
@@ -62,14 +62,14 @@ void set_indices(const PlanarFace& face, bool from_front, VirtualLight& light) {
 }
 
 /// Mirrors a place at the face.
-LightPlace mirrored(const LightPlace& place, const PlanarFace& face) {
+LightPlace mirrored(const LightPlace& place, const LightFace& face) {
   const double height = glm::dot(face.normal, towards(place, face.centroid_mm));
   return place - LightPlace(2 * height * face.normal, 0);
 }
 
 /// A point light seen through a plate stands nearer by t (1 - 1 / n), on any side no nearer than a hundredth
 /// of its height: a light nearer to the pane than that stays on its side of it.
-LightPlace through_pane(const LightPlace& place, const PlanarFace& face) {
+LightPlace through_pane(const LightPlace& place, const LightFace& face) {
   if (place.w == 0) return place;
   const double height = glm::dot(face.normal, towards(place, face.centroid_mm));
   const double shift =
@@ -78,7 +78,7 @@ LightPlace through_pane(const LightPlace& place, const PlanarFace& face) {
 }
 
 /// Refracts the light at the centroid into `light`. False beyond the critical angle.
-bool refract_light(const LightPlace& place, const PlanarFace& face, const glm::dvec3& incoming,
+bool refract_light(const LightPlace& place, const LightFace& face, const glm::dvec3& incoming,
                    VirtualLight& light) {
   const glm::dvec3 way = towards(place, face.centroid_mm);
   const double distance = glm::length(way), n = light.n_to / light.n_from;
@@ -99,7 +99,7 @@ bool refract_light(const LightPlace& place, const PlanarFace& face, const glm::d
 }
 
 /// The part of the face that the light before reaches.
-std::vector<ConvexPolygon> make_aperture(const PlanarFace& face, const VirtualLight* before) {
+std::vector<ConvexPolygon> make_aperture(const LightFace& face, const VirtualLight* before) {
   if (!before) return face.pieces;
   const double least = kLeastArea * total_area(face.pieces);
   std::vector<ConvexPolygon> aperture;
@@ -114,9 +114,9 @@ std::vector<ConvexPolygon> make_aperture(const PlanarFace& face, const VirtualLi
 }
 
 /// Adds what the face makes of a light (null: the source), reflected and passed.
-void add_step(const LightPlace& source, std::span<const PlanarFace> faces, std::size_t index, int before,
+void add_step(const LightPlace& source, std::span<const LightFace> faces, std::size_t index, int before,
               std::vector<VirtualLight>& lights) {
-  const PlanarFace& face = faces[index];
+  const LightFace& face = faces[index];
   const LightPlace place = before < 0 ? source : lights[std::size_t(before)].place;
   const glm::dvec3 way = towards(place, face.centroid_mm);
   const double slope = glm::dot(face.normal, way) / glm::length(way);
@@ -206,7 +206,7 @@ std::vector<glm::dvec4> light_volume(const VirtualLight& light, const ConvexPoly
   return planes;
 }
 
-std::vector<VirtualLight> virtual_lights(const LightPlace& source, std::span<const PlanarFace> faces,
+std::vector<VirtualLight> virtual_lights(const LightPlace& source, std::span<const LightFace> faces,
                                          int depth) {
   std::vector<VirtualLight> lights;
   std::size_t first = 0;
@@ -229,7 +229,7 @@ int step_count(std::span<const VirtualLight> lights, std::size_t index) {
   return count;
 }
 
-glm::dvec3 face_share(const PlanarFace& face, const VirtualLight& light, double cos_theta_i) {
+glm::dvec3 face_share(const LightFace& face, const VirtualLight& light, double cos_theta_i) {
   if (face.kind == OpticKind::mirror) return glm::dvec3(face.reflectance);
   const double r =
       fresnel_dielectric(std::clamp(cos_theta_i, 0.0, 1.0), light.n_from, light.n_to).unpolarised;
@@ -238,7 +238,7 @@ glm::dvec3 face_share(const PlanarFace& face, const VirtualLight& light, double 
   return light.reflected ? glm::dvec3(reflected) : (1 - reflected) * glm::dvec3(face.tint);
 }
 
-std::optional<LightPath> light_path(std::span<const VirtualLight> lights, std::span<const PlanarFace> faces,
+std::optional<LightPath> light_path(std::span<const VirtualLight> lights, std::span<const LightFace> faces,
                                     const LightPlace& source, std::size_t index, const glm::dvec3& point) {
   LightPath path;
   glm::dvec3 lit = point;

@@ -12,7 +12,7 @@ optics::LightPlace place_of(const Light& light) {
 
 SceneLights scene_lights(const Scene& scene) {
   SceneLights result;
-  result.faces = optics::planar_faces(scene.optics);
+  result.faces = optics::light_faces(scene.optics);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     const int count = light.shadows ? scene.settings.soft_shadow_samples : 1;

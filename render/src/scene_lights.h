@@ -22,7 +22,7 @@ struct LightPoint {
 };
 
 struct SceneLights {
-  std::vector<optics::PlanarFace> faces;  ///< of the planar optics
+  std::vector<optics::LightFace> faces;  ///< of the planar optics
   std::vector<LightPoint> points;         ///< in the order of Scene::lights
 };
 

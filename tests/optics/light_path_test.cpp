@@ -15,8 +15,8 @@ namespace catoptra::optics {
 namespace {
 
 /// A square of half-width `half` in the plane z = 0 about the origin, front up.
-PlanarFace square(OpticKind kind, double half = 100) {
-  PlanarFace face;
+LightFace square(OpticKind kind, double half = 100) {
+  LightFace face;
   face.kind = kind;
   face.pieces = {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}}};
   return face;
@@ -109,13 +109,13 @@ TEST(DiscLights, LieOnTheirDisc) {
   EXPECT_EQ(disc_lights({sun, 0}, {}, 0, 16).size(), 1u);
 }
 
-TEST(PlanarFaces, PiecesAreConvexAndFillTheOutline) {
+TEST(LightFaces, PiecesAreConvexAndFillTheOutline) {
   // An L of 3 x 3 without its upper right 2 x 2, as four triangles: area 5, centroid (11, 11) / 10.
   const Optic l = planar_optic({{0, 0, 7}, {3, 0, 7}, {3, 1, 7}, {1, 1, 7}, {1, 3, 7}, {0, 3, 7}},
                                {{{0, 1, 2}}, {{0, 2, 3}}, {{0, 3, 4}}, {{0, 4, 5}}});
   const Optic other = planar_optic({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0, 1, 2}}});
   std::vector<Optic> optics{Optic{}, l, other};
-  const auto faces = planar_faces(optics);
+  const auto faces = light_faces(optics);
   ASSERT_EQ(faces.size(), 2u);
   EXPECT_EQ(faces[0].optic, 1u);
   EXPECT_EQ(faces[0].pieces.size(), 2u);
@@ -126,11 +126,11 @@ TEST(PlanarFaces, PiecesAreConvexAndFillTheOutline) {
   optics[2].mesh.vertices.push_back({});
   optics[2].mesh.triangles.push_back({{1, 2, 3}, 0, {}});
   optics[2].mesh.vertices[3].position_mm = {1, 1, 0};
-  EXPECT_THROW((void)planar_faces(optics), Error);
+  EXPECT_THROW((void)light_faces(optics), Error);
 }
 
 TEST(VirtualLights, MirrorsShowTheImage) {
-  const std::vector<PlanarFace> faces{square(OpticKind::mirror)};
+  const std::vector<LightFace> faces{square(OpticKind::mirror)};
   const LightPlace point(30, 40, 200, 1);
   const auto lights = virtual_lights(point, faces, 3);
   ASSERT_EQ(lights.size(), 1u);
@@ -148,7 +148,7 @@ TEST(VirtualLights, MirrorsShowTheImage) {
 }
 
 TEST(VirtualLights, OneSidedFacesAndThoseEdgeOnLightNothing) {
-  std::vector<PlanarFace> faces{square(OpticKind::mirror)};
+  std::vector<LightFace> faces{square(OpticKind::mirror)};
   EXPECT_EQ(virtual_lights({0, 0, -50, 1}, faces, 1).size(), 1u);
   EXPECT_EQ(virtual_lights({1, 0, 0, 0}, faces, 1).size(), 0u);
   faces[0].one_sided = true;
@@ -156,7 +156,7 @@ TEST(VirtualLights, OneSidedFacesAndThoseEdgeOnLightNothing) {
 }
 
 TEST(VirtualLights, DirectionsAreRefractedBySnellsLaw) {
-  const std::vector<PlanarFace> faces{square(OpticKind::refractor)};
+  const std::vector<LightFace> faces{square(OpticKind::refractor)};
   const double a = 0.7, b = std::asin(std::sin(a) / 1.5);
   const auto lights = virtual_lights({std::sin(a), 0, std::cos(a), 0}, faces, 1);
   ASSERT_EQ(lights.size(), 2u);
@@ -171,7 +171,7 @@ TEST(VirtualLights, DirectionsAreRefractedBySnellsLaw) {
 }
 
 TEST(VirtualLights, NothingPassesBeyondTheCriticalAngle) {
-  const std::vector<PlanarFace> faces{square(OpticKind::refractor)};
+  const std::vector<LightFace> faces{square(OpticKind::refractor)};
   const double beyond = std::asin(1 / 1.5) + 0.01;
   const auto lights = virtual_lights({std::sin(beyond), 0, -std::cos(beyond), 0}, faces, 1);
   ASSERT_EQ(lights.size(), 1u);
@@ -180,7 +180,7 @@ TEST(VirtualLights, NothingPassesBeyondTheCriticalAngle) {
 }
 
 TEST(VirtualLights, APointLightAppearsAtItsApparentDepth) {
-  const std::vector<PlanarFace> faces{square(OpticKind::refractor)};
+  const std::vector<LightFace> faces{square(OpticKind::refractor)};
   // Into glass, straight down: n times as far. Out of it: 1 / n.
   EXPECT_NEAR(virtual_lights({0, 0, 200, 1}, faces, 1)[1].place.z, 300, 1e-12);
   EXPECT_NEAR(virtual_lights({0, 0, -300, 1}, faces, 1)[1].place.z, -200, 1e-12);
@@ -207,7 +207,7 @@ double flux_through(const LightPlace& place, double gain, double height, double 
 TEST(VirtualLights, ARefractorKeepsThePowerOfALight) {
   // A face small before its distance to the light, where the model of one virtual point holds: what goes in
   // comes out, to the second order of the size (here (2 / 500)^2), and all of it arrives further on.
-  const std::vector<PlanarFace> faces{square(OpticKind::refractor, 1)};
+  const std::vector<LightFace> faces{square(OpticKind::refractor, 1)};
   const LightPlace source(200, -100, 500, 1);
   const VirtualLight light = virtual_lights(source, faces, 1)[1];
   const double in = flux_through(source, 1, 0, -1, 1, -1, 1);
@@ -221,7 +221,7 @@ TEST(VirtualLights, ARefractorKeepsThePowerOfALight) {
 }
 
 TEST(VirtualLights, ADirectionThroughARefractorKeepsItsPower) {
-  const std::vector<PlanarFace> faces{square(OpticKind::refractor)};
+  const std::vector<LightFace> faces{square(OpticKind::refractor)};
   const LightPlace sun(std::sin(1.0), 0, std::cos(1.0), 0);
   const VirtualLight light = virtual_lights(sun, faces, 1)[1];
   const auto volume = light_volume(light, light.aperture[0]);
@@ -234,9 +234,9 @@ TEST(VirtualLights, ADirectionThroughARefractorKeepsItsPower) {
 }
 
 TEST(VirtualLights, APaneShiftsPointsAndLeavesDirections) {
-  PlanarFace pane = square(OpticKind::pane);
+  LightFace pane = square(OpticKind::pane);
   pane.thickness_mm = 30;
-  const std::vector<PlanarFace> faces{pane};
+  const std::vector<LightFace> faces{pane};
   EXPECT_EQ(virtual_lights({10, 20, 200, 1}, faces, 1)[1].place, LightPlace(10, 20, 190, 1));
   EXPECT_EQ(virtual_lights({10, 20, -200, 1}, faces, 1)[1].place, LightPlace(10, 20, -190, 1));
   const LightPlace sun(0.6, 0, 0.8, 0);
@@ -249,8 +249,8 @@ TEST(VirtualLights, APaneShiftsPointsAndLeavesDirections) {
 }
 
 /// Two mirrors that face one another: z = 0 about the origin, and z = 400 about (x, 0).
-std::vector<PlanarFace> facing_mirrors(double x, double half) {
-  PlanarFace upper = square(OpticKind::mirror, half);
+std::vector<LightFace> facing_mirrors(double x, double half) {
+  LightFace upper = square(OpticKind::mirror, half);
   upper.normal = {0, 0, -1};
   upper.centroid_mm = {x, 0, 400};
   for (glm::dvec3& p : upper.pieces[0]) p += upper.centroid_mm;

@@ -88,7 +88,7 @@ class PieceMaker {
 }
 
 /// Sets centroid and normal from the mesh's triangles.
-void set_plane(const Optic& optic, PlanarFace& face) {
+void set_plane(const Optic& optic, LightFace& face) {
   glm::dvec3 area(0), moment(0);
   double weight = 0, size = 0;
   const auto& vertices = optic.mesh.vertices;
@@ -113,12 +113,12 @@ void set_plane(const Optic& optic, PlanarFace& face) {
 
 }  // namespace
 
-std::vector<PlanarFace> planar_faces(std::span<const Optic> optics) {
-  std::vector<PlanarFace> faces;
+std::vector<LightFace> light_faces(std::span<const Optic> optics) {
+  std::vector<LightFace> faces;
   for (std::size_t i = 0; i < optics.size(); ++i) {
     const Optic& optic = optics[i];
     if (!optic.planar) continue;
-    PlanarFace face;
+    LightFace face;
     face.optic = i;
     face.kind = optic.kind;
     set_plane(optic, face);
