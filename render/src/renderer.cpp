@@ -108,7 +108,7 @@ struct Renderer::Impl {
       rays.add_surroundings(scene.surroundings[m],
                             make_alpha_test(scene.surroundings[m], textures.textures[m]));
     for (const optics::Optic& optic : scene.optics) {
-      optic_objects.push_back(rays.add_optic(mesh_for_rays(optic)));
+      optic_objects.push_back(rays.add_optic(mesh_for_rays(optic), mask_for_rays(optic)));
       optic_boxes.push_back(bounds_of(optic));
     }
     rays.commit();
