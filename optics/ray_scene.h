@@ -30,7 +30,8 @@ class RayScene {
   /// Both return the object number that hits carry: 0, 1, 2, ... in order of addition. The data are copied.
   /// Only the triangles that some material makes alpha-tested cost a call of `alpha_test`.
   std::uint32_t add_surroundings(const cad_import::TriangleMesh& mesh, AlphaTest alpha_test = {});
-  std::uint32_t add_optic(const tessellate::OpticArrays& mesh);
+  /// `mask`: what the optic is to queries.
+  std::uint32_t add_optic(const tessellate::OpticArrays& mesh, std::uint32_t mask = kOptics | kCasters);
 
   /// Replaces an optic's mesh (moved, or refined). Takes effect at the next commit().
   void update_optic(std::uint32_t object, const tessellate::OpticArrays& mesh);
@@ -45,6 +46,10 @@ class RayScene {
 
   /// The bare packet query: rays with t_max < t_min are inactive (lane skipped, object set to kNoHit).
   void intersect16(RayPacket16& packet, std::uint32_t mask, bool coherent) const;
+
+  /// The bare packet query for shadows: bit i of the result is set where lane i meets something between its
+  /// t_min and t_max. Changes the packet.
+  [[nodiscard]] std::uint32_t occluded16(ShadowPacket16& packet, std::uint32_t mask, bool coherent) const;
 
   [[nodiscard]] bool occluded(const Ray& ray, std::uint32_t mask = kEverything) const;
 

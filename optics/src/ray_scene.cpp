@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -20,6 +21,11 @@ namespace {
 
 // RayPacket16 is handed to Embree as it is.
 static_assert(sizeof(RayPacket16) == sizeof(RTCRayHit16) && alignof(RayPacket16) == alignof(RTCRayHit16));
+static_assert(sizeof(ShadowPacket16) == sizeof(RTCRay16) && alignof(ShadowPacket16) == alignof(RTCRay16));
+static_assert(offsetof(ShadowPacket16, t_min) == offsetof(RTCRay16, tnear));
+static_assert(offsetof(ShadowPacket16, direction_x) == offsetof(RTCRay16, dir_x));
+static_assert(offsetof(ShadowPacket16, t_max) == offsetof(RTCRay16, tfar));
+static_assert(offsetof(ShadowPacket16, flags) == offsetof(RTCRay16, flags));
 static_assert(RTC_MAX_INSTANCE_LEVEL_COUNT == 1 && kNoHit == RTC_INVALID_GEOMETRY_ID);
 static_assert(offsetof(RayPacket16, t_min) == offsetof(RTCRay16, tnear));
 static_assert(offsetof(RayPacket16, direction_x) == offsetof(RTCRay16, dir_x));
@@ -124,6 +130,7 @@ struct RayScene::Impl {
   struct Object {
     std::size_t triangle_count = 0;
     std::uint32_t optic_part = kNoHit;  // surroundings: none
+    std::uint32_t mask = 0;             // of an optic
   };
 
   EmbreeDevice device;
@@ -158,13 +165,14 @@ struct RayScene::Impl {
   }
 
   std::unique_ptr<Part> make_part(std::uint32_t object, RTCBuffer positions, std::size_t vertex_count,
-                                  std::span<const glm::uvec3> triangles, bool optic) const {
+                                  std::span<const glm::uvec3> triangles, std::uint32_t mask) const {
     auto part = std::make_unique<Part>();
     part->object = object;
     part->geometry.reset(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     RTCGeometry geometry = part->geometry.get();
-    rtcSetGeometryBuildQuality(geometry, optic ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetGeometryMask(geometry, optic ? kOptics : kSurroundings);
+    const bool moves = (mask & kSurroundings) == 0;
+    rtcSetGeometryBuildQuality(geometry, moves ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetGeometryMask(geometry, mask);
     rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0,
                          sizeof(glm::vec3), vertex_count);
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -185,13 +193,14 @@ struct RayScene::Impl {
     parts.push_back(std::move(part));
   }
 
-  std::unique_ptr<Part> make_optic_part(std::uint32_t object, const tessellate::OpticArrays& mesh) const {
+  std::unique_ptr<Part> make_optic_part(std::uint32_t object, const tessellate::OpticArrays& mesh,
+                                        std::uint32_t mask) const {
     std::vector<glm::uvec3> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) triangles.emplace_back(t.vertices[0], t.vertices[1], t.vertices[2]);
     check_indices("", triangles, mesh.vertices.size());
     const EmbreeBuffer buffer = position_buffer(mesh.vertices.size());
-    auto part = make_part(object, buffer.get(), mesh.vertices.size(), triangles, true);
+    auto part = make_part(object, buffer.get(), mesh.vertices.size(), triangles, mask);
     set_optic_positions(*part, mesh);
     return part;
   }
@@ -268,18 +277,19 @@ std::uint32_t RayScene::add_surroundings(const cad_import::TriangleMesh& mesh, A
   std::memcpy(rtcGetBufferData(buffer.get()), mesh.positions.data(),
               mesh.positions.size() * sizeof(glm::vec3));
 
-  const auto subset = [&](const std::vector<std::uint32_t>& indices) {
+  const auto subset = [&](const std::vector<std::uint32_t>& indices, std::uint32_t mask) {
     std::vector<glm::uvec3> triangles;
     for (const std::uint32_t i : indices) triangles.push_back(mesh.triangles[i]);
-    auto part = impl_->make_part(object, buffer.get(), mesh.positions.size(), triangles, false);
+    auto part = impl_->make_part(object, buffer.get(), mesh.positions.size(), triangles, mask);
     part->triangle_of = indices;
     return part;
   };
   if (tested.empty()) {
-    impl_->attach(impl_->make_part(object, buffer.get(), mesh.positions.size(), mesh.triangles, false));
+    impl_->attach(impl_->make_part(object, buffer.get(), mesh.positions.size(), mesh.triangles,
+                                   kSurroundings | kCasters));
   } else {
-    if (!opaque.empty()) impl_->attach(subset(opaque));
-    auto part = subset(tested);
+    if (!opaque.empty()) impl_->attach(subset(opaque, kSurroundings | kCasters));
+    auto part = subset(tested, kSurroundings);
     part->alpha_test = std::move(alpha_test);
     rtcSetGeometryUserData(part->geometry.get(), part.get());
     rtcSetGeometryIntersectFilterFunction(part->geometry.get(), filter_alpha);
@@ -287,14 +297,14 @@ std::uint32_t RayScene::add_surroundings(const cad_import::TriangleMesh& mesh, A
     impl_->parts_are_objects = false;
     impl_->attach(std::move(part));
   }
-  impl_->objects.push_back({mesh.triangles.size(), kNoHit});
+  impl_->objects.push_back({mesh.triangles.size()});
   return object;
 }
 
-std::uint32_t RayScene::add_optic(const tessellate::OpticArrays& mesh) {
+std::uint32_t RayScene::add_optic(const tessellate::OpticArrays& mesh, std::uint32_t mask) {
   const auto object = static_cast<std::uint32_t>(impl_->objects.size());
-  auto part = impl_->make_optic_part(object, mesh);
-  impl_->objects.push_back({mesh.triangles.size(), static_cast<std::uint32_t>(impl_->parts.size())});
+  auto part = impl_->make_optic_part(object, mesh, mask);
+  impl_->objects.push_back({mesh.triangles.size(), static_cast<std::uint32_t>(impl_->parts.size()), mask});
   impl_->attach(std::move(part));
   return object;
 }
@@ -313,7 +323,7 @@ void RayScene::update_optic(std::uint32_t object, const tessellate::OpticArrays&
     rtcUpdateGeometryBuffer(part.geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0);
     rtcCommitGeometry(part.geometry.get());
   } else {
-    auto fresh = impl_->make_optic_part(object, mesh);
+    auto fresh = impl_->make_optic_part(object, mesh, entry.mask);
     rtcCommitGeometry(fresh->geometry.get());
     rtcDetachGeometry(impl_->scene.get(), entry.optic_part);
     rtcAttachGeometryByID(impl_->scene.get(), fresh->geometry.get(), entry.optic_part);
@@ -365,6 +375,25 @@ void RayScene::intersect16(RayPacket16& packet, std::uint32_t mask, bool coheren
     packet.object[i] = part.object;
     packet.triangle[i] = part.object_triangle(packet.triangle[i]);
   }
+}
+
+std::uint32_t RayScene::occluded16(ShadowPacket16& packet, std::uint32_t mask, bool coherent) const {
+  alignas(64) int valid[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    valid[i] = packet.t_max[i] >= packet.t_min[i] ? -1 : 0;
+    packet.mask[i] = mask;
+    packet.time[i] = 0;
+    packet.flags[i] = 0;
+  }
+  RTCIntersectContext context = query_context(coherent);
+  rtcOccluded16(valid, impl_->scene.get(), &context, reinterpret_cast<RTCRay16*>(&packet));
+  std::uint32_t met = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    // Embree marks an occluded ray by tfar = -infinity.
+    const bool blocked = valid[i] != 0 && packet.t_max[i] == -std::numeric_limits<float>::infinity();
+    met |= blocked ? 1u << i : 0u;
+  }
+  return met;
 }
 
 bool RayScene::occluded(const Ray& ray, std::uint32_t mask) const {
