@@ -36,14 +36,22 @@ std::size_t most_in(const std::vector<Seen>& triangles, const std::vector<std::u
                     const Cell& cell, int depth) {
   if (list.size() <= kFew || depth == kDeepest) return list.size();
   const float x = 0.5f * (cell.x0 + cell.x1), y = 0.5f * (cell.y0 + cell.y1);
-  std::size_t most = 0;
-  for (const Cell& quarter : {Cell{cell.x0, x, cell.y0, y}, Cell{x, cell.x1, cell.y0, y},
-                              Cell{cell.x0, x, y, cell.y1}, Cell{x, cell.x1, y, cell.y1}}) {
-    std::vector<std::uint32_t> inside;
+  const std::array<Cell, 4> quarters{{{cell.x0, x, cell.y0, y},
+                                      {x, cell.x1, cell.y0, y},
+                                      {cell.x0, x, y, cell.y1},
+                                      {x, cell.x1, y, cell.y1}}};
+  std::array<std::vector<std::uint32_t>, 4> inside;
+  std::size_t all = 0;
+  for (std::size_t q = 0; q < 4; ++q) {
     for (const std::uint32_t i : list)
-      if (!misses(triangles[i], quarter)) inside.push_back(i);
-    most = std::max(most, most_in(triangles, inside, quarter, depth + 1));
+      if (!misses(triangles[i], quarters[q])) inside[q].push_back(i);
+    all += inside[q].size();
   }
+  // Triangles as large as the cell lie one behind the other however closely one looks.
+  if (all >= 2 * list.size()) return list.size();
+  std::size_t most = 0;
+  for (std::size_t q = 0; q < 4; ++q)
+    most = std::max(most, most_in(triangles, inside[q], quarters[q], depth + 1));
   return most;
 }
 
