@@ -74,6 +74,16 @@ struct MapStats {
   std::size_t scene_rays = 0;  ///< sent into the scene from there
 };
 
+/// Raster modes: what shadows have cost, over all views of a frame. All 0 where no light casts any.
+struct ShadowStats {
+  std::size_t views = 0;             ///< the picture and the maps drawn
+  std::size_t volumes = 0;           ///< drawn, of connected bodies
+  std::size_t silhouette_edges = 0;  ///< of the volumes drawn
+  std::size_t stencil_draws = 0;     ///< that count
+  std::size_t folds = 0;             ///< from the count into the light's bit
+  double time_ms = 0;                ///< a part of the passes' times; the key "shadow" of FrameStats::time_ms
+};
+
 /// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
@@ -82,6 +92,7 @@ struct FrameStats {
   std::size_t rays = 0;  ///< all rays of the frame
   int samples = 1;       ///< per pixel in the picture; above 1, all counts and times are sums over them
   std::vector<MapStats> maps;  ///< mode pvrr: all maps, level by level
+  ShadowStats shadows;
 };
 
 struct RenderResult {

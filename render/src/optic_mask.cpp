@@ -104,6 +104,7 @@ void draw_around_optics(RasterScene& raster, OpticMask& mask, RasterPicture& pic
   for (const auto& [target, geometry] : picture.passes(options.geometry)) {
     RasterPass pass;
     pass.geometry = geometry;
+    pass.multisample = target->multisample();
     target->bind(geometry);
     raster.draw(view, pass);
     mask.begin(size, &target->depth(), target->multisample());
