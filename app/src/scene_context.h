@@ -61,8 +61,7 @@ void add_remaining_faces(const cad_import::CadModel& model, std::span<const int>
 [[nodiscard]] render::Camera read_camera(const TomlTable& root, const SceneContext& context);
 [[nodiscard]] render::Environment read_environment(const TomlTable& root, const SceneContext& context);
 [[nodiscard]] std::vector<render::Light> read_lights(const TomlTable& root, const SceneContext& context);
-[[nodiscard]] render::RenderSettings read_render_settings(const TomlTable& root,
-                                                          std::vector<std::string>& warnings);
+[[nodiscard]] render::RenderSettings read_render_settings(const TomlTable& root);
 [[nodiscard]] EvaluationSettings read_evaluation(const TomlTable& root, const SceneContext& context);
 void read_surroundings(const TomlTable& root, const SceneContext& context, SceneFile& result);
 void read_mirrors(const TomlTable& root, const SceneContext& context, SceneFile& result);

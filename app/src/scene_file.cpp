@@ -1,5 +1,6 @@
 #include "app/scene_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -24,6 +25,23 @@ std::string read_all(std::istream& stream) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Says once what of the light the model leaves out (docs/decisions/0015).
+void warn_of_light(render::Scene& scene) {
+  if (std::ranges::none_of(scene.lights, &render::Light::shadows)) return;
+  std::string without;
+  for (const optics::Optic& optic : scene.optics) {
+    if (optic.planar) continue;
+    scene.warnings.push_back("light reflected or refracted by " + optic.name + " is not simulated");
+    if (optic.kind == optics::OpticKind::lens && without.empty()) without = "lenses";
+  }
+  for (const cad_import::TriangleMesh& mesh : scene.surroundings) {
+    if (std::ranges::none_of(mesh.materials, [](const auto& m) { return m.alpha_cutoff > 0; })) continue;
+    without += without.empty() ? "alpha-tested triangles" : " and alpha-tested triangles";
+    break;
+  }
+  if (!without.empty()) scene.warnings.push_back(without + " cast no shadow");
+}
+
 }  // namespace
 
 SceneFile read_scene_text(std::string_view text, const std::string& name, const std::filesystem::path& folder,
@@ -41,18 +59,14 @@ SceneFile read_scene_text(std::string_view text, const std::string& name, const 
   scene.camera = read_camera(root, context);
   scene.environment = read_environment(root, context);
   scene.lights = read_lights(root, context);
-  scene.settings = read_render_settings(root, scene.warnings);
+  scene.settings = read_render_settings(root);
   result.evaluation = read_evaluation(root, context);
-  for (const render::Light& light : scene.lights)
-    if (light.shadows) {
-      scene.warnings.push_back("this version renders no shadows: [[light]] shadows = true has no effect");
-      break;
-    }
   read_surroundings(root, context, result);
   read_mirrors(root, context, result);
   read_lenses(root, context, result);
   read_planars(root, context, result);
   result.surrounding_sources.resize(scene.surroundings.size());  // rims of lenses
+  warn_of_light(scene);
   return result;
 }
 

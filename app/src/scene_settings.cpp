@@ -96,7 +96,7 @@ std::vector<render::Light> read_lights(const TomlTable& root, const SceneContext
   return lights;
 }
 
-render::RenderSettings read_render_settings(const TomlTable& root, std::vector<std::string>& warnings) {
+render::RenderSettings read_render_settings(const TomlTable& root) {
   render::RenderSettings settings;
   settings.max_error_px = 0.5;
   const toml::table* found = root.table("render");
@@ -116,13 +116,6 @@ render::RenderSettings read_render_settings(const TomlTable& root, std::vector<s
       table.number("texels_per_pixel", {0.05, 16}).value_or(settings.texels_per_pixel);
   settings.soft_shadow_samples =
       table.integer("soft_shadow_samples", 1, 4096).value_or(settings.soft_shadow_samples);
-  // Parts of the format whose passes this version does not have: said once, never passed over in silence.
-  std::string unused;
-  for (const std::string_view key : {"soft_shadow_samples"}) {
-    if (table.has(key)) unused += (unused.empty() ? "" : ", ") + std::string(key);
-  }
-  if (!unused.empty())
-    warnings.push_back("this version does not use [render] " + unused);
   return settings;
 }
 

@@ -93,7 +93,11 @@ void add_paths(Frame& frame) {
 
 const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic) {
   static const tessellate::OpticArrays none;
-  return optic.kind == optics::OpticKind::mirror ? optic.mesh : none;
+  return optic.kind == optics::OpticKind::lens ? none : optic.mesh;
+}
+
+std::uint32_t mask_for_rays(const optics::Optic& optic) {
+  return optic.kind == optics::OpticKind::mirror ? optics::kOptics | optics::kCasters : optics::kCasters;
 }
 
 void allocate(Frame& frame, const FrameOptions& options) {

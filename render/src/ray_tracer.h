@@ -14,9 +14,11 @@
 
 namespace catoptra::render {
 
-/// What stands for an optic in the shared ray scene: a mirror's mesh; nothing for a lens, which other optics
-/// do not show and which the tracer itself keeps apart.
+/// What stands for an optic in the shared ray scene: the mesh of a mirror or planar glass; nothing for a
+/// lens, which casts no shadow. Lenses and glass are kept apart by the tracer itself, so that
 [[nodiscard]] const tessellate::OpticArrays& mesh_for_rays(const optics::Optic& optic);
+/// ... only shadow rays meet glass.
+[[nodiscard]] std::uint32_t mask_for_rays(const optics::Optic& optic);
 
 /// Objects of the shared ray scene: surroundings 0 .. surroundings.size() - 1, then the optics in order.
 /// Gives `frame` the options' size, and room for colours and, where asked for, geometry. Keeps its memory.

@@ -91,7 +91,7 @@ SecondaryPacket secondary_packet(const optics::RayPacket16& rays, bool others) {
 PacketTracer::PacketTracer(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
     : scene_(scene),
       rays_(rays),
-      shading_(scene, textures),
+      shading_(scene, textures, rays),
       lenses_(scene),
       chains_(scene, rays, shading_, lenses_) {
   for (const optics::Optic& optic : scene.optics) {

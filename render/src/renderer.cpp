@@ -108,7 +108,7 @@ struct Renderer::Impl {
       rays.add_surroundings(scene.surroundings[m],
                             make_alpha_test(scene.surroundings[m], textures.textures[m]));
     for (const optics::Optic& optic : scene.optics) {
-      optic_objects.push_back(rays.add_optic(mesh_for_rays(optic)));
+      optic_objects.push_back(rays.add_optic(mesh_for_rays(optic), mask_for_rays(optic)));
       optic_boxes.push_back(bounds_of(optic));
     }
     rays.commit();
@@ -135,6 +135,8 @@ struct Renderer::Impl {
       for (std::size_t i = 0; i < placements.size(); ++i) place_on_gpu(i);
     }
     RenderResult result = draw_samples(mode, camera, options, until);
+    if (std::ranges::any_of(scene.lights, &Light::shadows))
+      result.warnings.emplace_back("mode raytrace alone casts shadows; what this mode draws has none");
     context->throw_if_errors();
     return result;
   }

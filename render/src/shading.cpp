@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 
 namespace catoptra::render {
@@ -95,15 +96,14 @@ glm::vec3 sky_radiance(const SkyImage& sky, const Environment& environment, cons
 /// Intermediate values of one call of shade().
 struct alignas(64) ShadingScene::Gathered {
   const ShadeMaterial* material[ShadeLanes::kLanes];
-  float nx[ShadeLanes::kLanes], ny[ShadeLanes::kLanes], nz[ShadeLanes::kLanes];
+  LitLanes lit;
   /// Texels per unit of area on the surface, times twice the triangle's area.
   float texels[ShadeLanes::kLanes];
-  float red[ShadeLanes::kLanes], green[ShadeLanes::kLanes], blue[ShadeLanes::kLanes];  ///< irradiance
   TextureLanes texture;
 };
 
-ShadingScene::ShadingScene(const Scene& scene, const SceneTextures& textures)
-    : scene_(scene), textures_(textures) {
+ShadingScene::ShadingScene(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays)
+    : scene_(scene), textures_(textures), lighting_(scene, rays) {
   linear_.reserve(scene.surroundings.size());
   for (std::size_t m = 0; m < scene.surroundings.size(); ++m)
     add_surroundings(scene.surroundings[m], textures.textures[m]);
@@ -156,6 +156,7 @@ void ShadingScene::pack_optic(std::size_t index) {
 
 void ShadingScene::optic_changed(std::size_t index) {
   pack_optic(index);
+  lighting_.optic_changed(scene_);
 }
 
 /// Interpolates the corners' normals and texture coordinates; turns the normal to the side of the viewer.
@@ -165,8 +166,8 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
     g.texture.texture[i] = nullptr;
     g.texture.s[i] = g.texture.t[i] = g.texels[i] = 0;
     g.texture.wrap[i] = cad_import::TextureWrap::repeat;
-    g.nx[i] = g.ny[i] = 0;
-    g.nz[i] = 1;
+    g.lit.nx[i] = g.lit.ny[i] = 0;
+    g.lit.nz[i] = 1;
     if (!lanes.active[i] || lanes.object[i] == optics::kNoHit) continue;
     const Object& object = objects_[lanes.object[i]];
     const ShadeTriangle& tri = object.triangles[lanes.triangle[i]];
@@ -176,9 +177,9 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
                              0;
     const float side = from_behind ? -1.0f : 1.0f, v = side * lanes.v[i], u = side * lanes.u[i],
                 w = side - u - v;
-    g.nx[i] = w * tri.normal[0].x + u * tri.normal[1].x + v * tri.normal[2].x;
-    g.ny[i] = w * tri.normal[0].y + u * tri.normal[1].y + v * tri.normal[2].y;
-    g.nz[i] = w * tri.normal[0].z + u * tri.normal[1].z + v * tri.normal[2].z;
+    g.lit.nx[i] = w * tri.normal[0].x + u * tri.normal[1].x + v * tri.normal[2].x;
+    g.lit.ny[i] = w * tri.normal[0].y + u * tri.normal[1].y + v * tri.normal[2].y;
+    g.lit.nz[i] = w * tri.normal[0].z + u * tri.normal[1].z + v * tri.normal[2].z;
     const bool back = object.optic && from_behind != object.flip;
     const ShadeMaterial& material = materials_[tri.material + (back ? 1u : 0u)];
     g.material[i] = &material;
@@ -192,40 +193,52 @@ void ShadingScene::gather(const ShadeLanes& lanes, Gathered& g) const {
   }
 }
 
-/// Irradiance: ambient plus each light's share by Lambert's cosine law.
+/// Where shadow rays start: on the flat triangles, by weights, which no length of the eye's ray blurs.
+void ShadingScene::set_starts(const ShadeLanes& lanes, LitLanes& lit) const {
+  for (int i = 0; i < ShadeLanes::kLanes; ++i) {
+    if (!lit.lit[i]) continue;
+    glm::dvec3 corner[3];
+    corners(lanes.object[i], lanes.triangle[i], corner);
+    const double u = lanes.u[i], v = lanes.v[i];
+    lit.start[i] = (1 - u - v) * corner[0] + u * corner[1] + v * corner[2];
+    const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double length = glm::length(normal);
+    lit.flat_normal[i] = length > 0 ? normal / length : glm::dvec3(0);
+    double largest = 0;
+    for (const glm::dvec3& c : corner)
+      largest = std::max({largest, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+    lit.margin[i] = shadow_margin_mm(largest);
+  }
+}
+
+void ShadingScene::corners(std::uint32_t object, std::uint32_t triangle, glm::dvec3 (&corner)[3]) const {
+  if (object < scene_.surroundings.size()) {
+    const cad_import::TriangleMesh& mesh = scene_.surroundings[object];
+    for (int k = 0; k < 3; ++k) corner[k] = glm::dvec3(mesh.positions[mesh.triangles[triangle][k]]);
+    return;
+  }
+  const tessellate::OpticArrays& mesh = scene_.optics[object - scene_.surroundings.size()].mesh;
+  for (std::size_t k = 0; k < 3; ++k)
+    corner[k] = mesh.vertices[mesh.triangles[triangle].vertices[k]].position_mm;
+}
+
+/// Irradiance: ambient plus what of each light is seen.
 void ShadingScene::add_lights(const ShadeLanes& lanes, Gathered& g) const {
-  constexpr int n = ShadeLanes::kLanes;
-  for (int i = 0; i < n; ++i) {
-    const float squared = g.nx[i] * g.nx[i] + g.ny[i] * g.ny[i] + g.nz[i] * g.nz[i];
+  LitLanes& lit = g.lit;
+  for (int i = 0; i < ShadeLanes::kLanes; ++i) {
+    const float squared = lit.nx[i] * lit.nx[i] + lit.ny[i] * lit.ny[i] + lit.nz[i] * lit.nz[i];
     const float scale = squared > 0 ? 1 / std::sqrt(squared) : 0.0f;
-    g.nx[i] *= scale;
-    g.ny[i] *= scale;
-    g.nz[i] *= scale;
-    g.red[i] = g.green[i] = g.blue[i] = scene_.environment.ambient;
+    lit.nx[i] *= scale;
+    lit.ny[i] *= scale;
+    lit.nz[i] *= scale;
+    lit.x[i] = lanes.position_x[i];
+    lit.y[i] = lanes.position_y[i];
+    lit.z[i] = lanes.position_z[i];
+    lit.lit[i] = g.material[i] != nullptr;
+    lit.red[i] = lit.green[i] = lit.blue[i] = scene_.environment.ambient;
   }
-  for (const Light& light : scene_.lights) {
-    const glm::vec3 power = light.color * light.intensity;
-    if (light.kind == LightKind::directional) {
-      const glm::vec3 l = -glm::vec3(light.direction);
-      for (int i = 0; i < n; ++i) {
-        const float cosine = std::max(0.0f, g.nx[i] * l.x + g.ny[i] * l.y + g.nz[i] * l.z);
-        g.red[i] += power.r * cosine;
-        g.green[i] += power.g * cosine;
-        g.blue[i] += power.b * cosine;
-      }
-      continue;
-    }
-    const glm::vec3 p(light.position_mm);
-    for (int i = 0; i < n; ++i) {
-      const float x = p.x - lanes.position_x[i], y = p.y - lanes.position_y[i], z = p.z - lanes.position_z[i];
-      const float squared = std::max(1e-6f, x * x + y * y + z * z);
-      const float cosine = std::max(0.0f, (g.nx[i] * x + g.ny[i] * y + g.nz[i] * z) / std::sqrt(squared));
-      const float share = cosine * (1e6f / squared);  // intensity is the irradiance at 1 m
-      g.red[i] += power.r * share;
-      g.green[i] += power.g * share;
-      g.blue[i] += power.b * share;
-    }
-  }
+  if (lighting_.any_shadows()) set_starts(lanes, lit);
+  lighting_.add(lit);
 }
 
 /// Level of detail from the texels under the pixel: area on the surface x texels per area (both of the
@@ -260,7 +273,7 @@ void ShadingScene::shade(ShadeLanes& lanes) const {
     const ShadeMaterial* m = g.material[i];
     any_sky = any_sky || !m;
     if (!m) continue;
-    const Float4 irradiance = {g.red[i], g.green[i], g.blue[i], 0};
+    const Float4 irradiance = {g.lit.red[i], g.lit.green[i], g.lit.blue[i], 0};
     lanes.radiance[i] = m->emissive + m->base * g.texture.color[i] * irradiance;
   }
   if (any_sky) show_sky(g, lanes);

@@ -8,6 +8,7 @@
 
 #include "optics/ray_scene.h"
 #include "render/scene.h"
+#include "render/src/lighting.h"
 #include "render/src/textures.h"
 #include "render/src/textures_linear.h"
 
@@ -60,8 +61,9 @@ struct alignas(64) ShadeLanes {
 /// The surroundings and optics of a scene, packed for shading.
 class ShadingScene {
  public:
-  /// Keeps references to both, which must outlive it.
-  ShadingScene(const Scene& scene, const SceneTextures& textures);
+  /// Keeps references to all three, which must outlive it; `rays` holds the scene as it is (see
+  /// mask_for_rays()).
+  ShadingScene(const Scene& scene, const SceneTextures& textures, const optics::RayScene& rays);
 
   /// Takes the changed mesh of optic `index` over.
   void optic_changed(std::size_t index);
@@ -81,12 +83,15 @@ class ShadingScene {
   void add_surroundings(const cad_import::TriangleMesh& mesh, const std::vector<MipTexture>& textures);
   void pack_optic(std::size_t index);
   void gather(const ShadeLanes& lanes, Gathered& g) const;
+  void set_starts(const ShadeLanes& lanes, LitLanes& lit) const;
+  void corners(std::uint32_t object, std::uint32_t triangle, glm::dvec3 (&corner)[3]) const;
   void add_lights(const ShadeLanes& lanes, Gathered& g) const;
   static void set_detail(const ShadeLanes& lanes, Gathered& g);
   void show_sky(const Gathered& g, ShadeLanes& lanes) const;
 
   const Scene& scene_;
   const SceneTextures& textures_;
+  Lighting lighting_;
   std::vector<Object> objects_;
   std::vector<ShadeMaterial> materials_;
   std::vector<std::vector<LinearTexture>> linear_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -51,11 +52,18 @@ TEST(SceneFile, LightDirectionIsMadeUnit) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
-TEST(SceneFile, ShadowsAreRefusedByOneWarning) {
+TEST(SceneFile, LightWithShadowsSaysWhatItLeavesOut) {
   const TemporaryFolder folder;
-  const render::Scene scene = read("[[light]]\nshadows = true\n[[light]]\nshadows = true\n", folder);
-  ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("no shadows"), std::string::npos);
+  test::write_test_mirror(folder, 400);
+  const std::string mirror =
+      "[[mirror]]\nname = \"door\"\nfile = \"mirror.step\"\nfaces = [\"Glass\"]\n";
+  const auto warned = [&](const std::string& text) {
+    const render::Scene scene = read(text, folder);
+    return std::ranges::count(scene.warnings, "light reflected or refracted by door is not simulated");
+  };
+  EXPECT_EQ(warned("[[light]]\n[[light]]\n" + mirror), 1);
+  EXPECT_EQ(warned("[[light]]\nshadows = false\n" + mirror), 0);
+  EXPECT_TRUE(read("[[light]]\nradius = 3\n[render]\nsoft_shadow_samples = 4\n", folder).warnings.empty());
 }
 
 /// A triangle with a corner at (1, 0, 0): turned by 90 degrees about x (no change), then y (to -z), then z

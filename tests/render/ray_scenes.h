@@ -22,7 +22,8 @@ class TracedScene {
     for (std::size_t m = 0; m < scene.surroundings.size(); ++m)
       rays.add_surroundings(scene.surroundings[m],
                             render::make_alpha_test(scene.surroundings[m], textures.textures[m]));
-    for (const optics::Optic& optic : scene.optics) rays.add_optic(render::mesh_for_rays(optic));
+    for (const optics::Optic& optic : scene.optics)
+      rays.add_optic(render::mesh_for_rays(optic), render::mask_for_rays(optic));
     rays.commit();
     tracer = std::make_unique<render::RayTracer>(scene, textures, rays);
   }
