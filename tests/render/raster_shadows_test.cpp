@@ -112,27 +112,79 @@ TEST(RasterShadows, EightBitsHoldAnyNumberOfOverlaps) {
     for (int i = 0; i < sheets; ++i) add_sheet(scene, 1000 + float(i), 200);
     const Frame frame = picture(scene);
     EXPECT_EQ(red_at(scene, frame, {600, 0, 0}), 0) << sheets;
-    EXPECT_GT(red_at(scene, frame, {900, 0, 0}), 0.5f) << sheets;
+    EXPECT_GT(red_at(scene, frame, {200, 0, 0}), 0.5f) << sheets;
   }
 }
 
 TEST(RasterShadows, AgreeWithTheRayTracer) {
   Scene scene = room();
-  scene.optics.push_back(plane_mirror(200, 150));
+  scene.optics.push_back(conic_mirror(1200, 0, 200, 150, 17, 17));
   scene.camera.resolution = {160, 120};
   for (const int multisample : {1, 4})
     for (const Mode mode : {Mode::pvrr, Mode::cubemap, Mode::exact}) {
-      const Frame reference = picture(scene, Mode::raytrace);
       FrameOptions options;
+      options.geometry = true;
+      const Frame reference = picture(scene, Mode::raytrace, options);
       options.multisample = multisample;
       const Frame frame = picture(scene, mode, options);
-      std::size_t off = 0;
-      for (std::size_t i = 0; i < frame.color.size(); ++i)
+      std::size_t off = 0, compared = 0;
+      for (std::size_t i = 0; i < frame.color.size(); ++i) {
+        // In the mirror a cube map shows other places.
+        if (mode == Mode::cubemap && reference.optic_id[i] >= 0) continue;
+        ++compared;
         off += glm::length(glm::vec3(frame.color[i] - reference.color[i])) > 0.05f;
-      // Outlines of bodies and shadows; a whole shadow missing would be 5 % or more. The cube map is another
-      // picture, and multisampling smooths outlines.
-      EXPECT_LT(double(off), (mode == Mode::cubemap ? 0.5 : multisample > 1 ? 0.06 : 0.03) * double(frame.color.size()))
-          << mode_name(mode) << ' ' << multisample;
+      }
+      std::printf("%s, %d samples: %zu of %zu pixels off\n", std::string(mode_name(mode)).c_str(), multisample, off,
+                  compared);
+      // Outlines of bodies and shadows, which multisampling smooths.
+      EXPECT_LT(double(off), (multisample > 1 ? 0.06 : 0.03) * double(compared)) << mode_name(mode) << ' ' << multisample;
+    }
+}
+
+/// An upright planar optic at x = 0 whose front faces +x, 800 wide and 800 high.
+optics::Optic upright(optics::OpticKind kind) {
+  optics::Optic optic = conic_mirror(0, 0, 800, 800, 2, 2);
+  const auto turned = [](const glm::dvec3& v) { return glm::dvec3(v.z, v.x, v.y); };
+  for (auto& vertex : optic.mesh.vertices) {
+    vertex.position_mm = turned(vertex.position_mm) + glm::dvec3(0, 0, 410);
+    vertex.normal = turned(vertex.normal);
+  }
+  optic.kind = kind;
+  optic.planar = true;
+  optic.two_sided = true;
+  optic.material.thickness_mm = 10;
+  optic.material.tint = {0.9f, 0.8f, 0.7f};
+  return optic;
+}
+
+// The regions of the 1994 paper's Figure 2: light comes from x > 0, one box stands before the optic, one behind it.
+TEST(RasterShadows, RegionsOfTheLightVolumeAreThoseOfTheRayTracer) {
+  for (const auto kind : {optics::OpticKind::mirror, optics::OpticKind::refractor, optics::OpticKind::pane})
+    for (const bool point : {false, true}) {
+      Scene scene = ground(point ? lamp({1500, 100, 1800}) : sun({-1, -0.1, -0.8}));
+      scene.optics.push_back(upright(kind));
+      add_box(scene.surroundings[0], {300, -100, 0}, {400, 100, 300}, glm::vec3(1));
+      add_box(scene.surroundings[0], {-400, -100, 0}, {-300, 100, 300}, glm::vec3(1));
+      // What is compared is what stands around the optic, which mode hybrid draws as pvrr does.
+      FrameOptions options;
+      options.geometry = true;
+      const Frame frame = picture(scene, Mode::hybrid, options),
+                  reference = picture(scene, Mode::raytrace, options);
+      std::size_t compared = 0, off = 0, by_optic = 0;
+      for (std::size_t i = 0; i < frame.color.size(); ++i) {
+        if (reference.optic_id[i] >= 0 || frame.optic_id[i] >= 0) continue;
+        ++compared;
+        off += glm::length(glm::vec3(frame.color[i] - reference.color[i])) > 0.01f;
+        by_optic += std::abs(reference.color[i].r - reference.color[i].b) > 1e-4f;
+      }
+      std::printf("%s %s: %zu of %zu pixels off, %zu by tinted light\n", optics::kind_name(kind),
+                  point ? "point" : "sun", off, compared, by_optic);
+      EXPECT_GT(compared, frame.color.size() / 2);
+      // At edges of shadows rounding decides a few pixels (2 to 24 of 40,000 were seen); a missing shadow is thousands.
+      EXPECT_LT(double(off), 0.002 * double(compared)) << kind_name(kind) << (point ? " point" : " sun");
+      if (kind != optics::OpticKind::mirror) {
+        EXPECT_GT(by_optic, 500u) << "tinted light has to be seen";
+      }
     }
 }
 
@@ -179,7 +231,7 @@ TEST(RasterShadows, PenumbraOfADiscConvergesBothWays) {
 
 TEST(RasterShadows, SameBytesWhateverWasKept) {
   Scene scene = room();
-  scene.optics.push_back(plane_mirror(200, 150));
+  scene.optics.push_back(conic_mirror(1200, 0, 200, 150, 17, 17));
   scene.camera.resolution = {80, 60};
   FrameOptions keep, anew;
   anew.reuse_static = false;
