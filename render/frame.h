@@ -75,6 +75,16 @@ struct MapStats {
   std::size_t draws = 0;       ///< draw calls for surroundings and bodies in its maps, in this frame
 };
 
+/// Raster modes: what shadows have cost, over all views of a frame. All 0 where no light casts any.
+struct ShadowStats {
+  std::size_t views = 0;             ///< the picture and the maps drawn
+  std::size_t volumes = 0;           ///< drawn, of connected bodies
+  std::size_t silhouette_edges = 0;  ///< of the volumes drawn
+  std::size_t stencil_draws = 0;     ///< that count
+  std::size_t folds = 0;             ///< from the count into the light's bit
+  double time_ms = 0;                ///< a part of the passes' times; the key "shadow" of FrameStats::time_ms
+};
+
 /// What a frame cost. Times in ms; keys: "total", "trace", "pass1", "pass2", "verify", "readback",
 /// "raster", "map" as they apply.
 struct FrameStats {
@@ -85,6 +95,7 @@ struct FrameStats {
   std::vector<MapStats> maps;  ///< mode pvrr: all maps, level by level
   /// Mode pvrr: optics in maps of others that were found not to be seen there, so that no map was made.
   std::size_t maps_pruned = 0;
+  ShadowStats shadows;
 };
 
 struct RenderResult {

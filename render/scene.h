@@ -51,6 +51,10 @@ struct Environment {
   float ambient = 0.3f;  ///< irradiance from everywhere, white
 };
 
+/// What the raster modes make of a light's disc (the 1994 paper has both): every point a light of its own, or
+/// all points shading from the centre, so that shadows have as many levels of darkness as points.
+enum class SoftShadows { points, levels };
+
 struct RenderSettings {
   std::string mode = "pvrr";
   double max_error_px = 0;       ///< mode pvrr: refine the mesh until it is kept; 0: the mesh as tessellated
@@ -61,6 +65,7 @@ struct RenderSettings {
   double angle_rad = 0.0873;
   double texels_per_pixel = 1.5;
   int soft_shadow_samples = 16;
+  SoftShadows soft_shadows = SoftShadows::points;
 };
 
 struct Scene {

@@ -1,7 +1,7 @@
 // The one shading model of all modes (docs/decisions/0001); needs raster_view.glsl. Variants: LIGHTS, of which the first
 // DIRECTIONAL_LIGHTS have the directional kind. They are constants because a loop over a number known only at run time cost
 // a tenth of a frame on llvmpipe. SKY_TEXTURE: instead of one colour. Programs
-// that only show the sky do without them.
+// that only show the sky do without them. LIGHT_POINTS: lights cast shadows, and raster_lights.glsl comes before.
 
 #ifndef LIGHTS
 #define LIGHTS 0
@@ -15,6 +15,9 @@ layout(binding = 7) uniform sampler2D sky_texture;
 /// Radiance of a Lambert surface. `normal`: interpolated, towards the viewer; `position`: relative to the view.
 vec3 shade(vec3 albedo, vec3 emissive, vec3 normal, vec3 position) {
   vec3 irradiance = vec3(parameters.y);
+#ifdef LIGHT_POINTS
+  irradiance += irradiance_of_lights(normal, position);
+#else
   for (int i = 0; i < DIRECTIONAL_LIGHTS; ++i)
     irradiance += lights[i].radiance.rgb * max(0.0, dot(normal, lights[i].position.xyz));
   for (int i = DIRECTIONAL_LIGHTS; i < LIGHTS; ++i) {
@@ -24,6 +27,7 @@ vec3 shade(vec3 albedo, vec3 emissive, vec3 normal, vec3 position) {
     float fall_off = 1e6 * inverse_distance * inverse_distance;
     irradiance += lights[i].radiance.rgb * (fall_off * max(0.0, dot(normal, to_light) * inverse_distance));
   }
+#endif
   return emissive + albedo * irradiance;
 }
 

@@ -66,6 +66,7 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
       for (const auto& [target, geometry] : picture.passes(options.geometry)) {
         RasterPass pass;
         pass.geometry = geometry;
+        pass.multisample = target->multisample();
         target->bind(geometry);
         raster_.draw(view, pass);
         for (std::size_t i = 0; i < cubes_.size(); ++i) draw_optic(i, *target, view, geometry);
@@ -76,6 +77,7 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   });
   result.stats.time_ms = {{"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
+  add_shadows(raster_.take_shadow_statistics(), result.stats);
   for (const optics::Optic& optic : scene_.optics)
     result.stats.optics.push_back(
         {optic.name, optics::kind_name(optic.kind), optic.mesh.vertices.size(), 0, 0, {}});
@@ -177,13 +179,13 @@ void CubemapFrame::draw_optic(std::size_t optic, const RasterTarget& target, con
 }
 
 const GlProgram& CubemapFrame::optic_program(bool geometry) {
-  const auto found = optic_programs_.find(geometry);
+  const auto found = optic_programs_.find({geometry, raster_.shading_samples()});
   if (found != optic_programs_.end()) return found->second;
   std::vector<std::string> defines = raster_.shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return optic_programs_
-      .emplace(geometry, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
+      .emplace(std::pair(geometry, raster_.shading_samples()), make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                                      {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_shown.glsl",
                                        "raster_optic.glsl", "cubemap_optic.frag.glsl"},
                                       defines))
       .first->second;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cad_import/cad_model.h"
@@ -55,7 +56,7 @@ class CubemapFrame {
   RasterScene& raster_;
   std::vector<Cube> cubes_;   ///< one per optic
   std::vector<Lens> lenses_;  ///< one per optic, empty for mirrors
-  std::map<bool, GlProgram> optic_programs_;
+  std::map<std::pair<bool, int>, GlProgram> optic_programs_;
   LensPrograms lens_programs_;
 };
 

@@ -52,6 +52,7 @@ RenderResult ExactFrame::render(const Camera& camera, const FrameOptions& option
   result.stats.rays += rays;
   result.stats.time_ms = {{"trace", trace_ms},   {"pass1", pass1_ms},       {"pass2", pass2_ms},
                           {"verify", verify_ms}, {"readback", readback_ms}, {"total", total_ms}};
+  add_shadows(raster_.take_shadow_statistics(), result.stats);
   return result;
 }
 

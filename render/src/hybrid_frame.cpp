@@ -29,6 +29,7 @@ RenderResult HybridFrame::render(const Camera& camera, const FrameOptions& optio
   });
   result.stats.time_ms = {
       {"raster", raster_ms}, {"readback", readback_ms}, {"trace", trace_ms}, {"total", total_ms}};
+  add_shadows(raster_.take_shadow_statistics(), result.stats);
   for (const optics::Optic& optic : scene_.optics)
     result.stats.optics.push_back(
         {optic.name,

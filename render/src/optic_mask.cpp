@@ -128,6 +128,7 @@ void draw_around_optics(RasterScene& raster, OpticMask& mask, RasterPicture& pic
   for (const auto& [target, geometry] : picture.passes(options.geometry)) {
     RasterPass pass;
     pass.geometry = geometry;
+    pass.multisample = target->multisample();
     target->bind(geometry);
     raster.clear(view, pass);
     mask.hide(view);

@@ -30,7 +30,7 @@ void PvrrDraw::draw(const PvrrOptic& drawn, std::size_t index, const RasterTarge
 }
 
 const GlProgram& PvrrDraw::mirror_program(const Look& look) {
-  const std::tuple key{look.geometry, look.in_map, look.clipped};
+  const std::tuple key{look.geometry, look.in_map, look.clipped, raster_.shading_samples()};
   const auto found = mirror_programs_.find(key);
   if (found != mirror_programs_.end()) return found->second;
   std::vector<std::string> defines = raster_.shading_defines();
@@ -39,7 +39,7 @@ const GlProgram& PvrrDraw::mirror_program(const Look& look) {
   if (look.clipped) defines.emplace_back("CLIP_AGAINST_OPTIC");
   return mirror_programs_
       .emplace(key, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                 {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
+                                 {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_shown.glsl",
                                   "raster_optic.glsl", "pvrr_optic.frag.glsl"},
                                  defines))
       .first->second;

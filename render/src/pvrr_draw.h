@@ -33,7 +33,7 @@ class PvrrDraw {
 
   const Scene& scene_;
   const RasterScene& raster_;
-  std::map<std::tuple<bool, bool, bool>, GlProgram> mirror_programs_;
+  std::map<std::tuple<bool, bool, bool, int>, GlProgram> mirror_programs_;
   LensPrograms lens_programs_;
 };
 

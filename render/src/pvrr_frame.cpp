@@ -89,6 +89,7 @@ RenderResult PvrrFrame::render(const Camera& camera, const FrameOptions& options
   result.stats = statistics();
   result.stats.time_ms = {{"trace", trace_ms}, {"pass1", pass1_ms}, {"pass2", pass2_ms}, {"total", total_ms}};
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
+  add_shadows(raster_.take_shadow_statistics(), result.stats);
   result.warnings = map_warnings();
   for (std::size_t i = 0; i < stack_.size(); ++i) {
     const PvrrOptic* const optic = stack_.curved(i);
@@ -148,6 +149,7 @@ void PvrrFrame::draw_picture(const RasterTarget& target, const RasterView& camer
                              bool geometry, const FrameOptions& options) {
   RasterPass pass;
   pass.geometry = geometry;
+  pass.multisample = target.multisample();
   target.bind(geometry);
   raster_.clear(camera, pass);
   // First the optics, which hide much and cost little.

@@ -145,6 +145,7 @@ void PvrrMap::draw_regions(const Regions& regions, RasterPass pass, const Raster
     const double farthest = surface.farthest_mm(views.view);
     pass.clip_reach_mm = farthest + 1e-3 * std::abs(farthest) + 0.1;
   }
+  pass.multisample = target.multisample();
   target.bind(pass.geometry);
   scene.clear(views.view, pass);
   block(unseen);

@@ -71,6 +71,7 @@ RasterScene::RasterScene(const Scene& scene, const SceneTextures& textures) : sc
     backs_.push_back(back_of(optic));
   }
   depth_program_ = make_program({"raster_view.glsl", "raster_surface.vert.glsl"}, {"raster_depth.frag.glsl"});
+  if (has_shadows(scene)) shadows_ = std::make_unique<RasterShadows>(scene);
 }
 
 void RasterScene::upload_surroundings() {
@@ -146,6 +147,7 @@ void RasterScene::optic_changed(std::size_t index) {
   const optics::Placement placement = optics_[index].placement();
   optics_[index] = RasterOptic(scene_.optics[index].mesh);
   backs_[index] = back_of(scene_.optics[index]);
+  if (shadows_) shadows_->optic_changed(index);
   place_optic(index, placement);
   masks_.erase({index, optics::LensSide::front});
   masks_.erase({index, optics::LensSide::back});
@@ -154,6 +156,7 @@ void RasterScene::optic_changed(std::size_t index) {
 void RasterScene::place_optic(std::size_t index, const optics::Placement& placement) {
   optics_[index].place(placement);
   if (backs_[index]) backs_[index]->place(placement);
+  if (shadows_) shadows_->place_optic(index, placement);
 }
 
 const LensMask& RasterScene::exit_mask(std::size_t lens, optics::LensSide exit) {
@@ -229,7 +232,13 @@ std::vector<std::string> RasterScene::shading_defines() const {
   std::vector<std::string> defines{"LIGHTS " + std::to_string(lights_.size()),
                                    "DIRECTIONAL_LIGHTS " + std::to_string(directional)};
   if (sky_) defines.emplace_back("SKY_TEXTURE");
+  if (shadows_)
+    for (std::string& define : shadows_->defines(shading_samples_)) defines.push_back(std::move(define));
   return defines;
+}
+
+ShadowStats RasterScene::take_shadow_statistics() {
+  return shadows_ ? shadows_->take_statistics() : ShadowStats();
 }
 
 void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
@@ -238,6 +247,7 @@ void RasterScene::draw(const RasterView& view, const RasterPass& pass) {
 }
 
 void RasterScene::clear(const RasterView& view, const RasterPass& pass) {
+  draw_shadows(view, pass);
   begin_view(view, pass.level_bias);
   if (pass.clip_depth) glBindTextureUnit(kOpticDepthUnit, pass.clip_depth->id());
   const glm::vec4 background(scene_.environment.color, 1);
@@ -252,7 +262,26 @@ void RasterScene::draw_all(const RasterView& view, const RasterPass& pass) {
   if (sky_ || pass.geometry) draw_sky(pass);
 }
 
+void RasterScene::draw_shadows(const RasterView& view, const RasterPass& pass) {
+  if (!shadows_) return;
+  shading_samples_ = pass.multisample;
+  begin_view(view, pass.level_bias);
+  shadows_->draw(view, pass.multisample, [&] { draw_depth_of_bodies(view, pass); });
+  shadows_->bind_lights(view);
+}
+
+/// Of all that is lit, with whatever the optics among it show.
+void RasterScene::draw_depth_of_bodies(const RasterView& view, RasterPass pass) {
+  pass.geometry = false;
+  pass.draw_optics = true;
+  pass.nested = {};
+  depth_only_ = true;
+  draw_bodies_in_view(view, pass);
+  depth_only_ = false;
+}
+
 void RasterScene::draw_bodies(const RasterView& view, const RasterPass& pass) {
+  draw_shadows(view, pass);
   begin_view(view, pass.level_bias);
   draw_bodies_in_view(view, pass);
 }
@@ -313,7 +342,7 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
     const Chunk& chunk = chunks_[draw.chunk];
     const Batch& batch = batches_[chunk.batch];
     const GLuint wanted =
-        surface_program(batch.texture >= 0, batch.alpha_test, draw.clip, pass.geometry).id();
+        surface_program({batch.texture >= 0, batch.alpha_test, draw.clip, pass.geometry, depth_only_}).id();
     if (wanted != program) {
       glUseProgram(program = wanted);
       set_mesh_origin(view, glm::dvec3(0));
@@ -328,7 +357,7 @@ void RasterScene::draw_surroundings(const RasterView& view, const RasterPass& pa
 }
 
 void RasterScene::draw_optics(const RasterView& view, const RasterPass& pass) {
-  glUseProgram(surface_program(false, false, pass.clip_depth != nullptr, pass.geometry).id());
+  glUseProgram(surface_program({false, false, pass.clip_depth != nullptr, pass.geometry, depth_only_}).id());
   glEnable(GL_CULL_FACE);
   for (std::size_t i = 0; i < optics_.size(); ++i) {
     if (pass.except == i || scene_.optics[i].kind != optics::OpticKind::mirror) continue;
@@ -383,32 +412,38 @@ void RasterScene::draw_depth(const RasterView& view, const RasterOptic& surface,
   glDepthFunc(GL_GREATER);
 }
 
-const GlProgram& RasterScene::surface_program(bool textured, bool alpha_test, bool clip, bool geometry) {
-  const unsigned key =
-      unsigned(textured) | unsigned(alpha_test) << 1 | unsigned(clip) << 2 | unsigned(geometry) << 3;
+const GlProgram& RasterScene::surface_program(const Surface& surface) {
+  const unsigned key = unsigned(surface.textured) | unsigned(surface.alpha_test) << 1 | unsigned(surface.clip) << 2 |
+                       unsigned(surface.geometry) << 3 | unsigned(surface.depth_only) << 4 |
+                       unsigned(shading_samples_) << 5;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
-  std::vector<std::string> defines = shading_defines();
-  if (textured) defines.emplace_back("TEXTURED");
-  if (alpha_test) defines.emplace_back("ALPHA_TEST");
-  if (clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
-  if (geometry) defines.emplace_back("GEOMETRY");
+  std::vector<std::string> defines;
+  if (surface.depth_only)
+    defines.emplace_back("DEPTH_ONLY");
+  else
+    defines = shading_defines();
+  if (surface.textured) defines.emplace_back("TEXTURED");
+  if (surface.alpha_test) defines.emplace_back("ALPHA_TEST");
+  if (surface.clip) defines.emplace_back("CLIP_AGAINST_OPTIC");
+  if (surface.geometry) defines.emplace_back("GEOMETRY");
   return surface_programs_
-      .emplace(key,
-               make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                            {"raster_view.glsl", "raster_shading.glsl", "raster_surface.frag.glsl"}, defines))
+      .emplace(key, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                                 {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl",
+                                  "raster_surface.frag.glsl"},
+                                 defines))
       .first->second;
 }
 
 const GlProgram& RasterScene::sky_program(bool geometry) {
-  const auto found = sky_programs_.find(geometry);
+  const auto found = sky_programs_.find({geometry, shading_samples_});
   if (found != sky_programs_.end()) return found->second;
   std::vector<std::string> defines = shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return sky_programs_
-      .emplace(geometry,
+      .emplace(std::pair(geometry, shading_samples_),
                make_program({"raster_view.glsl", "raster_sky.vert.glsl"},
-                            {"raster_view.glsl", "raster_shading.glsl", "raster_sky.frag.glsl"}, defines))
+                            {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_sky.frag.glsl"}, defines))
       .first->second;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@
 #include "render/src/raster_chunks.h"
 #include "render/src/raster_lens_mask.h"
 #include "render/src/raster_optic.h"
+#include "render/src/raster_shadows.h"
 #include "render/src/raster_view.h"
 #include "render/src/textures.h"
 
@@ -31,6 +33,7 @@ struct RasterPass {
   bool draw_optics = false;               ///< the mirrors as diffuse bodies of their reflectance ...
   std::optional<std::size_t> except;      ///< ... but not this one
   std::span<const std::size_t> nested{};  ///< ... nor these, which show their own maps
+  int multisample = 1;                    ///< samples a pixel of the bound target
 };
 
 /// Everything static is uploaded once, positions in the meshes' own coordinates. Needs a current context
@@ -87,8 +90,13 @@ class RasterScene {
   /// Draw calls for surroundings and optics as bodies, since it was made.
   [[nodiscard]] std::size_t draws() const { return draws_; }
 
-  /// For programs that shade, see raster_shading.glsl.
+  /// For programs that shade, see raster_shading.glsl and raster_lights.glsl; they hold for targets with
+  /// shading_samples() samples a pixel, which is that of the last clear(), or 1 where there are no shadows.
   [[nodiscard]] std::vector<std::string> shading_defines() const;
+  [[nodiscard]] int shading_samples() const { return shading_samples_; }
+
+  /// What shadows have cost since the last call.
+  [[nodiscard]] ShadowStats take_shadow_statistics();
 
  private:
   struct Batch {
@@ -117,12 +125,17 @@ class RasterScene {
   [[nodiscard]] std::vector<Draw> draws_of(const RasterView& view, const RasterPass& pass) const;
   void draw_bodies_in_view(const RasterView& view, const RasterPass& pass);
   void draw_surroundings(const RasterView& view, const RasterPass& pass);
+  void draw_shadows(const RasterView& view, const RasterPass& pass);
+  void draw_depth_of_bodies(const RasterView& view, RasterPass pass);
   void draw_depth(const RasterView& view, const RasterOptic& surface, float none, GLenum keep, bool skirt);
   void set_material(const Batch& batch) const;
   void draw_optics(const RasterView& view, const RasterPass& pass);
   void draw_sky(const RasterPass& pass);
   /// Compiled on first use, for each combination of the shader's variants.
-  const GlProgram& surface_program(bool textured, bool alpha_test, bool clip, bool geometry);
+  struct Surface {
+    bool textured, alpha_test, clip, geometry, depth_only;
+  };
+  const GlProgram& surface_program(const Surface& surface);
   const GlProgram& sky_program(bool geometry);
 
   const Scene& scene_;
@@ -139,9 +152,12 @@ class RasterScene {
   std::vector<RasterOptic> optics_;
   std::vector<std::optional<RasterOptic>> backs_;  ///< of the lenses
   std::map<unsigned, GlProgram> surface_programs_;
-  std::map<bool, GlProgram> sky_programs_;
+  std::map<std::pair<bool, int>, GlProgram> sky_programs_;
   GlProgram depth_program_;
   std::size_t draws_ = 0;
+  std::unique_ptr<RasterShadows> shadows_;  ///< null where no light casts shadows
+  int shading_samples_ = 1;
+  bool depth_only_ = false;  ///< bodies are being drawn for shadows
   std::map<std::pair<std::size_t, optics::LensSide>, LensMask> masks_;
 };
 

@@ -126,8 +126,6 @@ struct Renderer::Impl {
       for (std::size_t i = 0; i < placements.size(); ++i) place_on_gpu(i);
     }
     RenderResult result = draw_samples(mode, camera, options, until);
-    if (std::ranges::any_of(scene.lights, &Light::shadows))
-      result.warnings.emplace_back("mode raytrace alone casts shadows; what this mode draws has none");
     context->throw_if_errors();
     return result;
   }

@@ -74,9 +74,10 @@ std::size_t different_off_edges(const Frame& a, const Frame& b) {
   return count;
 }
 
-// Of 76,800 pixels, one in a thousand: samples within rounding of an edge fall on either side of it, and the moved
-// world's vertices are rounded anew, to 2e-4 mm at 5 m. All of them have to lie at edges.
-constexpr std::size_t kOnEdges = 76;
+// Of 76,800 pixels, one in six hundred: samples within rounding of an edge fall on either side of it, and the moved
+// world's vertices are rounded anew, to 2e-4 mm at 5 m. All of them have to lie at edges. Without edges of shadows one
+// in a thousand had to do; with them 102 pixels were seen to change.
+constexpr std::size_t kOnEdges = 128;
 
 struct MovingCase {
   const char* name;
