@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <string>
 
@@ -29,7 +30,7 @@ void add_across(Model& car, const std::string& paint, const std::array<glm::vec2
 }
 
 void add_wheel(Model& car) {
-  const glm::vec3 hub(0, 0.44f, 0.86f), across(1, 0, 0), up(0, 0.45f, 0.893f);
+  const glm::vec3 hub(0, 0.44f, 0.86f), across(1, 0, 0), up = glm::normalize(glm::vec3(0, 0.45f, 0.893f));
   constexpr int kSegments = 32;
   constexpr float kRadius = 0.19f;
   const auto rim = [&](int i) {
@@ -38,7 +39,7 @@ void add_wheel(Model& car) {
   };
   for (int i = 0; i < kSegments; ++i) add_bar(car, "trim", rim(i), rim(i + 1), 0.015f, 8);
   for (const int i : {0, 16, 24}) add_bar(car, "trim", hub, rim(i), 0.018f, 8);
-  add_disc(car, "metal", hub - glm::vec3(0, 0.02f, -0.01f), {0, -0.893f, 0.45f}, 0.06f, 20);
+  add_disc(car, "metal", hub - glm::vec3(0, 0.02f, -0.01f), glm::cross(across, up), 0.06f, 20);
 }
 
 /// The inside of a door up to the window's edge.
