@@ -38,6 +38,8 @@ constexpr std::array<Cut, 21> kCuts = {{{-3.40f, Cut::none},       {-3.38f, Cut:
                                         {0.20f, Cut::open},        {0.40f, Cut::open},  {0.60f, Cut::open},
                                         {0.86f, Cut::none, true},  {0.87f, Cut::none},  {1.30f, Cut::none}}};
 
+constexpr int kPillar = 15;  // the cut from which the windscreen's pillar rises
+
 glm::vec3 side_point(int i, int j) {
   const float y = kCuts[static_cast<std::size_t>(i)].y;
   const glm::vec2 section = kSide[static_cast<std::size_t>(j)];
@@ -46,6 +48,18 @@ glm::vec3 side_point(int i, int j) {
   const float round = 0.42f * (1 - std::sqrt(std::max(0.0f, 1 - corner * corner)));
   const float height = section.x <= 0.94f ? section.x : 0.94f + (section.x - 0.94f) * (1 - 0.92f * boot);
   return {kFlank + section.y + round, y, height};
+}
+
+/// The same with everything above the belt lowered, towards the belt, to the windscreen's slope.
+glm::vec3 side_point_below_windscreen(int i, int j) {
+  glm::vec3 point = side_point(i, j);
+  if (j <= kBeltRow) return point;
+  const float roof = kSide.back().x, belt = kSide[kBeltRow].x, slope = (1.41f - 0.94f) / (1.02f - 0.40f);
+  const float highest = 1.41f - slope * (point.y - 0.40f);
+  const float share = std::clamp((highest - belt) / (roof - belt), 0.02f, 1.0f);
+  if (share < 1) point.x = std::min(point.x, kFlank + 0.20f);  // no roof there: a pillar
+  const glm::vec3 foot = side_point(i, kBeltRow);
+  return foot + share * (point - foot);
 }
 
 std::string side_paint(int i, int j) {
@@ -68,14 +82,21 @@ void add_rear_wheel(Model& car) {
 
 }  // namespace
 
-Model make_flank() {
+Model make_flank(bool to_windscreen) {
   Model car;
   // Seen from the left, the car's front is on the left: columns run backwards.
   constexpr int kColumns = static_cast<int>(kCuts.size());
   add_sheet(
       car, kColumns, static_cast<int>(kSide.size()),
-      [](int i, int j) { return side_point(kColumns - 1 - i, j); },
-      [](int i, int j) { return side_paint(kColumns - 2 - i, j); });
+      [&](int i, int j) {
+        return to_windscreen ? side_point_below_windscreen(kColumns - 1 - i, j)
+                             : side_point(kColumns - 1 - i, j);
+      },
+      [&](int i, int j) -> std::string {
+        const std::string paint = side_paint(kColumns - 2 - i, j);
+        // Seen from inside: the lining of the pillar.
+        return to_windscreen && j > kBeltRow && kColumns - 2 - i >= kPillar ? "trim" : paint;
+      });
   add_rear_wheel(car);
   for (const float y : {-0.02f, -1.02f}) {  // door handles
     add_box(car, "trim", {kFlank - 0.002f, y - 0.13f, 0.795f}, {kFlank + 0.012f, y + 0.10f, 0.845f});

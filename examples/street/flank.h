@@ -7,8 +7,10 @@
 namespace catoptra::examples {
 
 /// Left of the eye, the car's outer side at x = kFlank: doors, handles, windows, rear wheel. The front window
-/// is open (nothing is in it), so that the eye sees the mirror through it.
-[[nodiscard]] Model make_flank();
+/// is open (nothing is in it), so that the eye sees the mirror through it. Mirrors do not show where the
+/// windscreen begins, and the roof runs on; `to_windscreen` cuts it there, in the plane of make_cockpit(),
+/// for a look ahead.
+[[nodiscard]] Model make_flank(bool to_windscreen = false);
 inline constexpr float kFlank = -0.53f;
 
 /// What stands between the eye and the rear window: seats with head rests, roof, pillars and the window's

@@ -7,12 +7,10 @@
 namespace catoptra::examples {
 namespace {
 
-constexpr float kStorey = 2.9f, kReveal = 0.16f;
-
 /// An opening in the front, in metres from the left end and from the ground.
 struct Opening {
   float left, right, bottom, top;
-  std::string pane;
+  std::string pane;  ///< paint; empty: a hole
   bool sill;
 };
 
@@ -23,8 +21,9 @@ glm::vec3 on_front(float along, float height, float out = 0) {
 
 void add_opening(Model& house, const Opening& o) {
   const float in = -kReveal;
-  add_quad(house, o.pane, on_front(o.left, o.bottom, in), on_front(o.right, o.bottom, in),
-           on_front(o.right, o.top, in), on_front(o.left, o.top, in));
+  if (!o.pane.empty())
+    add_quad(house, o.pane, on_front(o.left, o.bottom, in), on_front(o.right, o.bottom, in),
+             on_front(o.right, o.top, in), on_front(o.left, o.top, in));
   add_quad(house, "stone", on_front(o.left, o.bottom), on_front(o.left, o.bottom, in),
            on_front(o.left, o.top, in), on_front(o.left, o.top));
   add_quad(house, "stone", on_front(o.right, o.bottom, in), on_front(o.right, o.bottom),
@@ -57,7 +56,7 @@ std::vector<Opening> storey_openings(const HouseDesign& design, int storey) {
   const float floor = kStorey * float(storey), bay = design.width / float(design.bays);
   if (storey == 0 && !design.shop.empty()) {
     const float door = design.width - 1.5f;
-    return {{0.5f, door - 0.4f, 0.5f, 2.3f, "shop window", true},
+    return {{0.5f, door - 0.4f, 0.5f, 2.3f, design.glazed ? "" : "shop window", true},
             {door, door + 1.0f, 0.05f, 2.25f, design.door, false}};
   }
   std::vector<Opening> openings;
@@ -67,7 +66,10 @@ std::vector<Opening> storey_openings(const HouseDesign& design, int storey) {
       openings.push_back({middle - 0.5f, middle + 0.5f, 0.15f, 2.25f, design.door, false});
     else
       openings.push_back({middle - 0.55f, middle + 0.55f, floor + 0.85f, floor + 2.4f,
-                          (i + storey) % 2 == 0 ? "window with curtains" : "window", true});
+                          design.glazed && design.shop.empty() ? ""
+                          : (i + storey) % 2 == 0              ? "window with curtains"
+                                                               : "window",
+                          true});
   }
   return openings;
 }

@@ -215,6 +215,15 @@ void add_signs(Palette& palette, const Font& font) {
   picture("shop optician", board(font, "FOCAL & SON", 512, 128, kGreen, kYellow));
   picture("shop baker", board(font, "BAKERY", 512, 128, {110, 30, 40, 255}, kWhite));
   picture("shop books", board(font, "BOOKS & MAPS", 512, 128, {24, 40, 80, 255}, kWhite));
+  // Inside the shops, where little light comes.
+  constexpr Rgba kDim{58, 52, 48, 255}, kDimInk{190, 172, 128, 255};
+  picture("dim board optician", board(font, "SPECTACLES", 512, 128, kDim, kDimInk));
+  picture("dim board baker", board(font, "FRESH BREAD", 512, 128, kDim, kDimInk));
+  picture("dim board books", board(font, "OLD MAPS", 512, 128, kDim, kDimInk));
+  for (int i = 0; i < 10; ++i) {
+    const std::string number = std::to_string(i);
+    picture("dim board number " + number, board(font, number.c_str(), 128, 128, kDim, kDimInk));
+  }
   picture("hanging sign", board(font, "CAFÉ", 256, 192, {70, 40, 24, 255}, {250, 220, 150, 255}));
   picture("notice", board(font, "MARKET SQUARE", 512, 128, kWhite, kBlack));
   for (int i = 0; i < 6; ++i)
@@ -253,6 +262,13 @@ void add_plain_paints(Palette& palette) {
   plain("sign back", {0.42f, 0.43f, 0.44f});
   plain("dark wood", {0.10f, 0.055f, 0.03f});
   plain("contact shade", {0.030f, 0.030f, 0.033f});
+  plain("dim wall", {0.050f, 0.045f, 0.040f});
+  plain("dim floor", {0.060f, 0.040f, 0.025f});
+  plain("dim ceiling", {0.070f, 0.070f, 0.065f});
+  plain("goods red", {0.28f, 0.04f, 0.03f});
+  plain("goods blue", {0.04f, 0.10f, 0.25f});
+  plain("goods yellow", {0.32f, 0.22f, 0.03f});
+  plain("goods white", {0.32f, 0.32f, 0.30f});
   plain("car glass", {0.045f, 0.060f, 0.075f});
   plain("tyre", {0.022f, 0.022f, 0.024f});
   plain("rim", {0.50f, 0.51f, 0.53f});

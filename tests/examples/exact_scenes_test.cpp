@@ -22,15 +22,22 @@ constexpr double kMostDiscolored = 0.02;
 constexpr double kMostRetracedMirror = 0.05, kMostRetracedLens = 0.15;
 constexpr std::size_t kLeastPixels = 1000;
 
+/// Scenes of planar glass, which mode exact does not show yet, and the series for measurement, whose windows
+/// are small, are left out.
+bool judged(const std::string& scene, const std::string& text) {
+  const auto has = [&](const char* word) { return text.find(word) != std::string::npos; };
+  if (scene.starts_with("window")) return false;
+  if (has("kind = \"pane\"") || has("kind = \"refractor\"")) return false;
+  return has("[[mirror]]") || has("[[lens]]") || has("[[planar]]");
+}
+
 std::vector<std::filesystem::path> scenes_with_optics() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(CATOPTRA_EXAMPLE_FOLDER)) {
     if (entry.path().extension() != ".toml") continue;
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
-    if (text.str().find("[[mirror]]") != std::string::npos ||
-        text.str().find("[[lens]]") != std::string::npos)
-      files.push_back(entry.path());
+    if (judged(entry.path().stem().string(), text.str())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -43,7 +50,8 @@ TEST_P(ExactScenes, ShowWhatExactRaysMeet) {
   const auto judged = judge_exact(file.scene, 320, 180);
   // Where an optic shows another one, every pixel of that is traced: no map knows what it shows from there.
   const std::string scene = GetParam().stem().string();
-  const bool shows_optics = scene == "two_mirrors" || scene == "door_mirror_window";
+  const bool shows_optics = scene == "two_mirrors" || scene == "door_mirror_window" ||
+                            scene == "door_mirror_planar" || scene == "plate2";
   for (std::size_t i = 0; i < judged.size(); ++i) {
     const ExactJudgement& j = judged[i];
     const optics::Optic& optic = file.scene.optics[i];

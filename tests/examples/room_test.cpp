@@ -10,26 +10,16 @@
 #include "examples/room/room_palette.h"
 #include "examples/room/spectacles.h"
 #include "examples/street/palette.h"
+#include "tests/support/sound_model.h"
 
 namespace catoptra::examples {
 namespace {
 
-/// Triangles that have an area, unit normals, paints that are there.
 void expect_sound(const Model& model) {
   Palette palette = make_palette(CATOPTRA_SIGN_FONT);
   add_room_paints(palette, CATOPTRA_SIGN_FONT);
-  for (const auto& [name, surface] : model.surfaces) {
-    ASSERT_TRUE(palette.paints.contains(name)) << name;
-    const std::string& texture = palette.paints.at(name).texture;
-    ASSERT_TRUE(texture.empty() || palette.textures.contains(texture)) << name;
-    for (const Vertex& vertex : surface.vertices)
-      ASSERT_NEAR(glm::length(vertex.normal), 1, 1e-5) << name;  // single precision
-    for (std::size_t i = 0; i < surface.indices.size(); i += 3) {
-      const auto corner = [&](std::size_t k) { return surface.vertices.at(surface.indices[i + k]).position; };
-      // The finest part is a frame of 2 mm tubes: no triangle below a hundredth of a square millimetre.
-      ASSERT_GT(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) / 2, 1e-8f) << name;
-    }
-  }
+  // The finest part is a frame of 2 mm tubes: no triangle below a hundredth of a square millimetre.
+  test::expect_sound(model, palette, 1e-8f);
 }
 
 TEST(Room, HasThreeToSixThousandTriangles) {

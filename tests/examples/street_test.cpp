@@ -6,33 +6,20 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "examples/street/cockpit.h"
 #include "examples/street/flank.h"
 #include "examples/street/house.h"
+#include "examples/street/interiors.h"
 #include "examples/street/palette.h"
 #include "examples/street/shapes.h"
+#include "tests/support/sound_model.h"
 
 namespace catoptra::examples {
 namespace {
 
-/// Every triangle refers to vertices that exist and has an area; every normal is a unit vector and every
-/// paint is known.
-void expect_sound(const Model& model, const Palette& palette) {
-  for (const auto& [name, surface] : model.surfaces) {
-    ASSERT_TRUE(palette.paints.contains(name)) << name;
-    const std::string& texture = palette.paints.at(name).texture;
-    ASSERT_TRUE(texture.empty() || palette.textures.contains(texture)) << name;
-    ASSERT_EQ(surface.indices.size() % 3, 0u);
-    for (const Vertex& vertex : surface.vertices)
-      ASSERT_NEAR(glm::length(vertex.normal), 1, 1e-5) << name;  // single precision
-    for (std::size_t i = 0; i < surface.indices.size(); i += 3) {
-      glm::vec3 corner[3];
-      for (std::size_t k = 0; k < 3; ++k) corner[k] = surface.vertices.at(surface.indices[i + k]).position;
-      // The smallest part of the models is about a millimetre: no triangle is thinner than a tenth of a
-      // square millimetre.
-      ASSERT_GT(glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0])) / 2, 1e-7f) << name;
-    }
-  }
-}
+/// The smallest part of the models is about a millimetre: no triangle is thinner than a tenth of a square
+/// millimetre.
+constexpr float kLeastArea = 1e-7f;
 
 TEST(Street, HasAboutTenThousandTriangles) {
   const std::size_t count = make_street().triangle_count();
@@ -42,11 +29,10 @@ TEST(Street, HasAboutTenThousandTriangles) {
 
 TEST(Street, ModelsAreSound) {
   const Palette palette = make_palette(CATOPTRA_SIGN_FONT);
-  expect_sound(make_street(), palette);
-  expect_sound(make_flank(), palette);
-  expect_sound(make_cabin(), palette);
-  expect_sound(make_wall(), palette);
-  expect_sound(make_housing(0.17f, 0.11f, 1.2f), palette);
+  for (const Model& model :
+       {make_street(), make_flank(), make_flank(true), make_cabin(), make_cockpit(), make_wall(),
+        make_housing(0.17f, 0.11f, 1.2f), make_shop_row(), make_window_front()})
+    test::expect_sound(model, palette, kLeastArea);
 }
 
 TEST(Street, LeavesTheDriversCarRoom) {
@@ -71,19 +57,27 @@ TEST(Flank, LeavesTheMirrorInView) {
   // The straight line from the eye to the mirror of door_mirror.toml crosses the car's side within the open
   // window.
   const glm::vec3 eye(0, 0, 1.2f), mirror(-0.66f, 0.56f, 1.02f);
-  for (const auto& [name, surface] : make_flank().surfaces)
-    for (std::size_t i = 0; i < surface.indices.size(); i += 3) {
-      const auto corner = [&](std::size_t k) {
-        return surface.vertices[surface.indices[i + k]].position - eye;
-      };
-      const glm::vec3 ray = mirror - eye;
-      const float a = glm::dot(glm::cross(corner(0), corner(1)), ray),
-                  b = glm::dot(glm::cross(corner(1), corner(2)), ray),
-                  c = glm::dot(glm::cross(corner(2), corner(0)), ray);
-      const bool crosses_line = (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
-      EXPECT_FALSE(crosses_line && glm::dot(corner(0), ray) > 0 && glm::length(corner(0)) < glm::length(ray))
-          << name;
-    }
+  const Model flanks[] = {make_flank(), make_flank(true)};
+  for (const Model& flank : flanks)
+    for (const auto& [name, surface] : flank.surfaces)
+      for (std::size_t i = 0; i < surface.indices.size(); i += 3) {
+        const auto corner = [&](std::size_t k) {
+          return surface.vertices[surface.indices[i + k]].position - eye;
+        };
+        const glm::vec3 ray = mirror - eye;
+        const float a = glm::dot(glm::cross(corner(0), corner(1)), ray),
+                    b = glm::dot(glm::cross(corner(1), corner(2)), ray),
+                    c = glm::dot(glm::cross(corner(2), corner(0)), ray);
+        const bool crosses_line = (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
+        EXPECT_FALSE(crosses_line && glm::dot(corner(0), ray) > 0 &&
+                     glm::length(corner(0)) < glm::length(ray))
+            << name;
+      }
+}
+
+TEST(WindowFront, StaysSmall) {
+  EXPECT_LE(make_window_front().triangle_count(), 4000u);
+  EXPECT_LE(make_shop_row().triangle_count(), 4000u);
 }
 
 TEST(Housing, StaysBehindTheGlass) {
