@@ -79,12 +79,8 @@ RenderResult CubemapFrame::render(const Camera& camera, const FrameOptions& opti
   if (options.read_back) result.stats.time_ms["readback"] = readback_ms;
   add_shadows(raster_.take_shadow_statistics(), result.stats);
   for (const optics::Optic& optic : scene_.optics)
-    result.stats.optics.push_back({optic.name,
-                                   optics::kind_name(optic.kind),
-                                   optic.mesh.vertices.size(),
-                                   0,
-                                   0,
-                                   {}});
+    result.stats.optics.push_back(
+        {optic.name, optics::kind_name(optic.kind), optic.mesh.vertices.size(), 0, 0, {}});
   return result;
 }
 
@@ -185,10 +181,11 @@ const GlProgram& CubemapFrame::optic_program(bool geometry) {
   std::vector<std::string> defines = raster_.shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return optic_programs_
-      .emplace(std::pair(geometry, raster_.shading_samples()), make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                       "raster_optic.glsl", "cubemap_optic.frag.glsl"},
-                                      defines))
+      .emplace(std::pair(geometry, raster_.shading_samples()),
+               make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                            {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl",
+                             "raster_shown.glsl", "raster_optic.glsl", "cubemap_optic.frag.glsl"},
+                            defines))
       .first->second;
 }
 
