@@ -126,6 +126,7 @@ RasterShadows::RasterShadows(const Scene& scene)
       fold_program_(make_program({"raster_accumulate.vert.glsl"}, {"shadow_fold.frag.glsl"})),
       nothing_(make_vertex_array({})) {
   sets_.resize(1 + scene.optics.size());
+  stale_.resize(sets_.size(), false);
   sets_[0].mesh = make_shadow_casters(surroundings_soup(scene));
   upload(sets_[0]);
   for (std::size_t i = 0; i < scene.optics.size(); ++i) optic_changed(i);
@@ -150,7 +151,7 @@ void RasterShadows::optic_changed(std::size_t index) {
   casters.center_mm = area_centroid(scene_.optics[index].mesh);
   casters.mesh = make_shadow_casters(optic_soup(scene_.optics[index], casters.center_mm));
   upload(casters);
-  for (auto& of_point : direct_) of_point[1 + index].reset();
+  stale_[1 + index] = true;
   lights_hold_ = false;
 }
 
@@ -158,7 +159,7 @@ void RasterShadows::place_optic(std::size_t index, const optics::Placement& plac
   Casters& casters = sets_[1 + index];
   if (placement == casters.placement) return;
   casters.placement = placement;
-  for (auto& of_point : direct_) of_point[1 + index].reset();
+  stale_[1 + index] = true;
   lights_hold_ = false;
 }
 
@@ -205,6 +206,11 @@ void RasterShadows::upload(Volume& volume) {
 }
 
 void RasterShadows::update_direct() {
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    if (!stale_[set]) continue;
+    for (auto& of_point : direct_) of_point[set].reset();
+    stale_[set] = false;
+  }
   std::vector<std::pair<std::size_t, std::size_t>> missing;
   for (std::size_t i = 0; i < direct_.size(); ++i)
     for (std::size_t set = 0; lights_.points[i].shadows && set < sets_.size(); ++set)

@@ -34,6 +34,7 @@ class RasterShadows {
   /// The optic has changed, or is somewhere else now. Only its own volumes, and those of virtual lights, are
   /// made anew.
   void optic_changed(std::size_t index);
+  /// Needs no current context.
   void place_optic(std::size_t index, const optics::Placement& placement);
 
   /// For raster_lights.glsl, in targets with so many samples a pixel.
@@ -92,6 +93,7 @@ class RasterShadows {
   std::vector<Casters> sets_;  ///< surroundings, then every optic (empty for lenses)
   std::vector<std::vector<std::optional<Volume>>> direct_;  ///< by point, then by set
   std::vector<Beam> beams_;  ///< by entry of points_ after the points themselves
+  std::vector<bool> stale_;  ///< sets whose volumes belong to another place
   bool lights_hold_ = false;
   RasterShadowTarget target_;
   GlBuffer gpu_points_;
