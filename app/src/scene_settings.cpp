@@ -103,7 +103,7 @@ render::RenderSettings read_render_settings(const TomlTable& root) {
   if (!found) return settings;
   const TomlTable table(*found, root.file(), "render",
                         {"mode", "max_error_px", "patch_fov_deg", "max_patches", "depth", "chord_mm",
-                         "angle_deg", "texels_per_pixel", "soft_shadow_samples"});
+                         "angle_deg", "texels_per_pixel", "soft_shadow_samples", "soft_shadows"});
   settings.mode = table.choice("mode", {"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"})
                       .value_or(settings.mode);
   settings.max_error_px = table.number("max_error_px", Range::not_negative()).value_or(settings.max_error_px);
@@ -116,6 +116,8 @@ render::RenderSettings read_render_settings(const TomlTable& root) {
       table.number("texels_per_pixel", {0.05, 16}).value_or(settings.texels_per_pixel);
   settings.soft_shadow_samples =
       table.integer("soft_shadow_samples", 1, 4096).value_or(settings.soft_shadow_samples);
+  if (table.choice("soft_shadows", {"points", "levels"}).value_or("points") == "levels")
+    settings.soft_shadows = render::SoftShadows::levels;
   return settings;
 }
 

@@ -29,8 +29,8 @@ layout(location = 20) uniform vec3 fog_albedo;
 layout(binding = 5) uniform sampler2D passed_color;
 layout(binding = 6) uniform sampler2D passed_depth;
 #ifdef GEOMETRY
-layout(binding = 8) uniform sampler2D passed_position;
-layout(binding = 9) uniform sampler2D passed_detail_map;
+layout(binding = 9) uniform sampler2D passed_position;
+layout(binding = 10) uniform sampler2D passed_detail_map;
 #endif
 #endif
 

@@ -184,10 +184,11 @@ const GlProgram& CubemapFrame::optic_program(bool geometry) {
   std::vector<std::string> defines = raster_.shading_defines();
   if (geometry) defines.emplace_back("GEOMETRY");
   return optic_programs_
-      .emplace(std::pair(geometry, raster_.shading_samples()), make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                      {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                       "raster_optic.glsl", "cubemap_optic.frag.glsl"},
-                                      defines))
+      .emplace(std::pair(geometry, raster_.shading_samples()),
+               make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
+                            {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl",
+                             "raster_shown.glsl", "raster_optic.glsl", "cubemap_optic.frag.glsl"},
+                            defines))
       .first->second;
 }
 

@@ -15,7 +15,7 @@ constexpr GLint kReflectance = 3, kWorks = 4, kBackAlbedo = 5, kOpticId = 6, kSu
                 kReflectedGrid = 8, kPassedGrid = 9, kIndexRatio = 10, kTint = 11, kHasMap = 12,
                 kPassedEye = 13, kFog = 14, kFace = 15, kFogAlbedo = 20;
 constexpr GLuint kReflectedColor = 2, kReflectedPosition = 3, kReflectedDetail = 4, kPassedColor = 5,
-                 kPassedDepth = 6, kPassedPosition = 8, kPassedDetail = 9;
+                 kPassedDepth = 6, kPassedPosition = 9, kPassedDetail = 10;
 // Fog of translucency 1 leaves nothing at any distance.
 constexpr double kDensestFog = -1e6;
 
@@ -88,7 +88,7 @@ void PlanarDraw::set_glass(const PlanarOptic& drawn, const RasterView& view, boo
 }
 
 const GlProgram& PlanarDraw::program(const optics::Optic& optic, const PvrrDraw::Look& look) {
-  const std::tuple key{optic.kind, look.geometry, look.in_map, look.clipped};
+  const std::tuple key{optic.kind, look.geometry, look.in_map, look.clipped, raster_.shading_samples()};
   const auto found = programs_.find(key);
   if (found != programs_.end()) return found->second;
   std::vector<std::string> defines = raster_.shading_defines();
@@ -99,8 +99,8 @@ const GlProgram& PlanarDraw::program(const optics::Optic& optic, const PvrrDraw:
   if (look.clipped) defines.emplace_back("CLIP_AGAINST_OPTIC");
   return programs_
       .emplace(key, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                 {"raster_view.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                  "planar_optic.frag.glsl"},
+                                 {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl",
+                                  "raster_shown.glsl", "planar_optic.frag.glsl"},
                                  defines))
       .first->second;
 }

@@ -24,7 +24,8 @@ class PlanarDraw {
 
   const Scene& scene_;
   const RasterScene& raster_;
-  std::map<std::tuple<optics::OpticKind, bool, bool, bool>, GlProgram> programs_;
+  /// By kind, look and RasterScene::shading_samples().
+  std::map<std::tuple<optics::OpticKind, bool, bool, bool, int>, GlProgram> programs_;
 };
 
 }  // namespace catoptra::render

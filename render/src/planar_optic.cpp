@@ -230,6 +230,7 @@ void PlanarOptic::draw_map(Map& map, const RasterView& view, bool geometry, Over
   pass.except = index_;
   const auto draw = [&](const RasterTarget& target, bool with_geometry) {
     pass.geometry = with_geometry;
+    pass.multisample = target.multisample();
     target.bind(with_geometry);
     raster_.clear(view, pass);
     if (nested && !nested->optics.empty()) {

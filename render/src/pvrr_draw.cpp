@@ -39,8 +39,8 @@ const GlProgram& PvrrDraw::mirror_program(const Look& look) {
   if (look.clipped) defines.emplace_back("CLIP_AGAINST_OPTIC");
   return mirror_programs_
       .emplace(key, make_program({"raster_view.glsl", "raster_surface.vert.glsl"},
-                                 {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_shown.glsl",
-                                  "raster_optic.glsl", "pvrr_optic.frag.glsl"},
+                                 {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl",
+                                  "raster_shown.glsl", "raster_optic.glsl", "pvrr_optic.frag.glsl"},
                                  defines))
       .first->second;
 }

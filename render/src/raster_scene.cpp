@@ -413,9 +413,9 @@ void RasterScene::draw_depth(const RasterView& view, const RasterOptic& surface,
 }
 
 const GlProgram& RasterScene::surface_program(const Surface& surface) {
-  const unsigned key = unsigned(surface.textured) | unsigned(surface.alpha_test) << 1 | unsigned(surface.clip) << 2 |
-                       unsigned(surface.geometry) << 3 | unsigned(surface.depth_only) << 4 |
-                       unsigned(shading_samples_) << 5;
+  const unsigned key = unsigned(surface.textured) | unsigned(surface.alpha_test) << 1 |
+                       unsigned(surface.clip) << 2 | unsigned(surface.geometry) << 3 |
+                       unsigned(surface.depth_only) << 4 | unsigned(shading_samples_) << 5;
   const auto found = surface_programs_.find(key);
   if (found != surface_programs_.end()) return found->second;
   std::vector<std::string> defines;
@@ -442,8 +442,10 @@ const GlProgram& RasterScene::sky_program(bool geometry) {
   if (geometry) defines.emplace_back("GEOMETRY");
   return sky_programs_
       .emplace(std::pair(geometry, shading_samples_),
-               make_program({"raster_view.glsl", "raster_sky.vert.glsl"},
-                            {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_sky.frag.glsl"}, defines))
+               make_program(
+                   {"raster_view.glsl", "raster_sky.vert.glsl"},
+                   {"raster_view.glsl", "raster_lights.glsl", "raster_shading.glsl", "raster_sky.frag.glsl"},
+                   defines))
       .first->second;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/vec4.hpp>
 #include <glm/vector_relational.hpp>
 #include <string>
-#include <glm/vec4.hpp>
 
 #include "cad_import/error.h"
 
@@ -47,7 +47,8 @@ void RasterShadowTarget::fit(glm::ivec2 size, int multisample, int bits) {
     glNamedFramebufferTexture(id, GL_DEPTH_STENCIL_ATTACHMENT, depth_.id(), 0);
     const GLenum status = glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
-      throw Error({}, "OpenGL", "the driver refuses a framebuffer for shadows (status " + std::to_string(status) + ")",
+      throw Error({}, "OpenGL",
+                  "the driver refuses a framebuffer for shadows (status " + std::to_string(status) + ")",
                   "the picture may be too large for the graphics memory");
   }
 }

@@ -8,8 +8,8 @@
 
 namespace catoptra::render {
 
-/// Depth is floating point as in RasterTarget, with eight bits of stencil that are all for shadows. Bits lie in
-/// layers of RGBA8, 32 in each.
+/// Depth is floating point as in RasterTarget, with eight bits of stencil that are all for shadows. Bits lie
+/// in layers of RGBA8, 32 in each.
 class RasterShadowTarget {
  public:
   /// At least of that size, with exactly so many samples a pixel, for at least so many bits.

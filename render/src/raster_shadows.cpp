@@ -56,7 +56,8 @@ TriangleSoup optic_soup(const optics::Optic& optic, const glm::dvec3& center_mm)
 }
 
 /// Whether anything of the box, or of what it shadows, may lie in the view.
-bool reaches_view(const glm::dmat4& clip_from_own, const cad_import::BoundingBox& box, const glm::dvec4& light) {
+bool reaches_view(const glm::dmat4& clip_from_own, const cad_import::BoundingBox& box,
+                  const glm::dvec4& light) {
   std::array<glm::dvec4, 16> corners;
   for (int k = 0; k < 8; ++k) {
     const glm::dvec3 p(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
@@ -112,18 +113,20 @@ void add_shadows(const ShadowStats& shadows, FrameStats& stats) {
 /// One view in work.
 struct RasterShadows::Counting {
   const RasterView& view;
-  bool turned;            ///< what is farther from the view's origin hides what is nearer: zooming_view()
-  std::size_t most = 0;   ///< the count may be as high as that
+  bool turned;           ///< what is farther from the view's origin hides what is nearer: zooming_view()
+  std::size_t most = 0;  ///< the count may be as high as that
 };
 
 RasterShadows::RasterShadows(const Scene& scene)
     : scene_(scene),
       levels_(scene.settings.soft_shadows == SoftShadows::levels),
       gpu_points_(make_dynamic_buffer(sizeof(GpuShadowPoint))),
-      volume_program_(make_program({"raster_view.glsl", "shadow_volume.vert.glsl"}, {"raster_depth.frag.glsl"})),
+      volume_program_(
+          make_program({"raster_view.glsl", "shadow_volume.vert.glsl"}, {"raster_depth.frag.glsl"})),
       fold_program_(make_program({"raster_accumulate.vert.glsl"}, {"shadow_fold.frag.glsl"})),
       nothing_(make_vertex_array({})) {
   sets_.resize(1 + scene.optics.size());
+  stale_.resize(sets_.size(), false);
   sets_[0].mesh = make_shadow_casters(surroundings_soup(scene));
   upload(sets_[0]);
   for (std::size_t i = 0; i < scene.optics.size(); ++i) optic_changed(i);
@@ -148,7 +151,7 @@ void RasterShadows::optic_changed(std::size_t index) {
   casters.center_mm = area_centroid(scene_.optics[index].mesh);
   casters.mesh = make_shadow_casters(optic_soup(scene_.optics[index], casters.center_mm));
   upload(casters);
-  for (auto& of_point : direct_) of_point[1 + index].reset();
+  stale_[1 + index] = true;
   lights_hold_ = false;
 }
 
@@ -156,7 +159,7 @@ void RasterShadows::place_optic(std::size_t index, const optics::Placement& plac
   Casters& casters = sets_[1 + index];
   if (placement == casters.placement) return;
   casters.placement = placement;
-  for (auto& of_point : direct_) of_point[1 + index].reset();
+  stale_[1 + index] = true;
   lights_hold_ = false;
 }
 
@@ -182,11 +185,13 @@ TriangleSoup RasterShadows::world_soup(std::size_t set) const {
   soup.reserve(3 * casters.mesh.triangles.size());
   for (const auto& triangle : casters.mesh.triangles)
     for (const std::uint32_t corner : triangle.corners)
-      soup.emplace_back(casters.placement.point(glm::dvec3(casters.mesh.positions[corner]) + casters.center_mm));
+      soup.emplace_back(
+          casters.placement.point(glm::dvec3(casters.mesh.positions[corner]) + casters.center_mm));
   return soup;
 }
 
-RasterShadows::Volume RasterShadows::make_volume(const Casters& casters, const optics::LightPlace& light) const {
+RasterShadows::Volume RasterShadows::make_volume(const Casters& casters,
+                                                 const optics::LightPlace& light) const {
   Volume made;
   made.casters = &casters;
   made.light = light.w == 0
@@ -201,6 +206,11 @@ void RasterShadows::upload(Volume& volume) {
 }
 
 void RasterShadows::update_direct() {
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    if (!stale_[set]) continue;
+    for (auto& of_point : direct_) of_point[set].reset();
+    stale_[set] = false;
+  }
   std::vector<std::pair<std::size_t, std::size_t>> missing;
   for (std::size_t i = 0; i < direct_.size(); ++i)
     for (std::size_t set = 0; lights_.points[i].shadows && set < sets_.size(); ++set)
@@ -328,7 +338,8 @@ void RasterShadows::draw_volume(Counting& counting, const Volume& volume, const 
 
   glUseProgram(volume_program_.id());
   RasterScene::set_mesh_origin(counting.view, casters.center_mm, casters.placement);
-  glUniform4f(kLight, float(volume.light.x), float(volume.light.y), float(volume.light.z), float(volume.light.w));
+  glUniform4f(kLight, float(volume.light.x), float(volume.light.y), float(volume.light.z),
+              float(volume.light.w));
   const bool parallel = counting.view.projection[2][3] == 0;
   glUniform1f(kReach, parallel && volume.light.w != 0 ? kParallelReach_mm : 0);
   glBindVertexArray(casters.array.id());
@@ -336,11 +347,11 @@ void RasterShadows::draw_volume(Counting& counting, const Volume& volume, const 
   glEnable(GL_DEPTH_CLAMP);
   glEnable(GL_CLIP_DISTANCE0);
   glDepthFunc(GL_GREATER);
-  // Faces beyond the surface as seen from the view's origin, that is, where they are hidden; in a zooming view
-  // where they are not.
+  // Faces beyond the surface as seen from the view's origin, that is, where they are hidden; in a zooming
+  // view where they are not.
   glStencilFunc(GL_ALWAYS, 0, 0xff);
-  for (const auto& [face, step] : {std::pair{GLenum(GL_FRONT), GLenum(GL_DECR_WRAP)},
-                                   std::pair{GLenum(GL_BACK), GLenum(GL_INCR_WRAP)}})
+  for (const auto& [face, step] :
+       {std::pair{GLenum(GL_FRONT), GLenum(GL_DECR_WRAP)}, std::pair{GLenum(GL_BACK), GLenum(GL_INCR_WRAP)}})
     glStencilOpSeparate(face, GL_KEEP, counting.turned ? GL_KEEP : step, counting.turned ? step : GL_KEEP);
   sides.draw();
   glEnable(GL_CULL_FACE);

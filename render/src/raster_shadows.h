@@ -1,5 +1,6 @@
-// Shadows in the raster modes: shadow and light volumes counted in the stencil (Diefenbach and Badler 1994; depth-fail
-// after Bilodeau and Songy, and Carmack), for any view. What reaches a pixel is kept as one bit for each light.
+// Shadows in the raster modes: shadow and light volumes counted in the stencil (Diefenbach and Badler 1994;
+// depth-fail after Bilodeau and Songy, and Carmack), for any view. What reaches a pixel is kept as one bit
+// for each light.
 #pragma once
 
 #include <cstddef>
@@ -33,6 +34,7 @@ class RasterShadows {
   /// The optic has changed, or is somewhere else now. Only its own volumes, and those of virtual lights, are
   /// made anew.
   void optic_changed(std::size_t index);
+  /// Needs no current context.
   void place_optic(std::size_t index, const optics::Placement& placement);
 
   /// For raster_lights.glsl, in targets with so many samples a pixel.
@@ -41,8 +43,8 @@ class RasterShadows {
   void bind_lights(const RasterView& view);
 
   /// Finds out which lights reach what the view shows, and lets programs read it at the same pixels.
-  /// `draw_depth` draws the depth of all bodies of the view into the bound target. Uniforms of the view are set
-  /// (RasterScene::begin_view). The scissor rectangle holds here too. Leaves the bound target as it is.
+  /// `draw_depth` draws the depth of all bodies of the view into the bound target. Uniforms of the view are
+  /// set (RasterScene::begin_view). The scissor rectangle holds here too. Leaves the bound target as it is.
   void draw(const RasterView& view, int multisample, const std::function<void()>& draw_depth);
 
   /// Counts since the last call.
@@ -88,9 +90,10 @@ class RasterShadows {
   bool levels_;
   SceneLights lights_;
   std::vector<ShadowPoint> points_;
-  std::vector<Casters> sets_;                ///< surroundings, then every optic (empty for lenses)
+  std::vector<Casters> sets_;  ///< surroundings, then every optic (empty for lenses)
   std::vector<std::vector<std::optional<Volume>>> direct_;  ///< by point, then by set
-  std::vector<Beam> beams_;                  ///< by entry of points_ after the points themselves
+  std::vector<Beam> beams_;  ///< by entry of points_ after the points themselves
+  std::vector<bool> stale_;  ///< sets whose volumes belong to another place
   bool lights_hold_ = false;
   RasterShadowTarget target_;
   GlBuffer gpu_points_;

@@ -63,7 +63,8 @@ std::size_t most_in_cell(const std::vector<Seen>& triangles, const Cell& cell) {
 }
 
 template <typename Look>
-std::vector<Seen> seen_by(const ShadowCasters& casters, std::span<const std::uint32_t> list, const Look& look) {
+std::vector<Seen> seen_by(const ShadowCasters& casters, std::span<const std::uint32_t> list,
+                          const Look& look) {
   std::vector<Seen> seen;
   seen.reserve(list.size());
   for (const std::uint32_t i : list) {
@@ -77,13 +78,12 @@ std::vector<Seen> seen_by(const ShadowCasters& casters, std::span<const std::uin
 
 std::size_t along_direction(const ShadowCasters& casters, std::span<const std::uint32_t> list,
                             const glm::dvec3& direction) {
-  const glm::dvec3 other = std::abs(direction.z) < 0.7 * glm::length(direction) ? glm::dvec3(0, 0, 1)
-                                                                                : glm::dvec3(1, 0, 0);
+  const glm::dvec3 other =
+      std::abs(direction.z) < 0.7 * glm::length(direction) ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 right = glm::normalize(glm::cross(direction, other)),
                    up = glm::normalize(glm::cross(right, direction));
-  const auto seen = seen_by(casters, list, [&](const glm::dvec3& p) {
-    return glm::vec3(glm::dot(p, right), glm::dot(p, up), 1);
-  });
+  const auto seen = seen_by(
+      casters, list, [&](const glm::dvec3& p) { return glm::vec3(glm::dot(p, right), glm::dot(p, up), 1); });
   Cell cell{seen[0][0].x, seen[0][0].x, seen[0][0].y, seen[0][0].y};
   for (const Seen& t : seen)
     for (const glm::vec3& p : t)

@@ -11,7 +11,8 @@
 namespace catoptra::render {
 
 /// No ray from the light meets more of the triangles `list` than this. An upper bound: exact for few
-/// triangles, else from a tree of cells that is no finer than it has to be. `light` as in make_shadow_volume().
+/// triangles, else from a tree of cells that is no finer than it has to be. `light` as in
+/// make_shadow_volume().
 [[nodiscard]] std::size_t most_overlaps(const ShadowCasters& casters, std::span<const std::uint32_t> list,
                                         const glm::dvec4& light);
 

@@ -72,8 +72,8 @@ std::vector<ShadowPoint> shadow_points(const Scene& scene, const SceneLights& li
     const int first = int(entries.size());
     for (int k = 0; k < int(lights.points[i].virtual_lights.size()); ++k) {
       const optics::VirtualLight& light = lights.points[i].virtual_lights[std::size_t(k)];
-      entries.push_back({i, k, light.before < 0 ? int(i) : first + light.before, bits++, false, light.place,
-                         light.gain});
+      entries.push_back(
+          {i, k, light.before < 0 ? int(i) : first + light.before, bits++, false, light.place, light.gain});
     }
   }
   if (!levels) return entries;

@@ -54,14 +54,13 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t i) {
   return i;
 }
 
-/// Brings the triangles of a body together, bodies in the order of their first triangles, and returns how many
-/// each has.
+/// Brings the triangles of a body together, bodies in the order of their first triangles, and returns how
+/// many each has.
 std::vector<std::size_t> sort_by_body(Welded& welded) {
   std::vector<std::uint32_t> parents(welded.positions.size());
   std::iota(parents.begin(), parents.end(), 0u);
   for (const auto& t : welded.triangles)
-    for (const std::uint32_t other : {t[1], t[2]})
-      parents[root_of(parents, other)] = root_of(parents, t[0]);
+    for (const std::uint32_t other : {t[1], t[2]}) parents[root_of(parents, other)] = root_of(parents, t[0]);
   std::unordered_map<std::uint32_t, std::size_t> numbers;
   std::vector<std::size_t> counts;
   std::vector<std::pair<std::size_t, std::size_t>> order;
@@ -234,7 +233,8 @@ class Builder {
 
   const ShadowCasters& casters_;
   glm::dvec4 light_;
-  std::vector<std::int32_t> net_;  ///< by edge: how often it runs from a to b, less the opposite; 0 between parts
+  std::vector<std::int32_t>
+      net_;  ///< by edge: how often it runs from a to b, less the opposite; 0 between parts
   std::vector<std::uint32_t> touched_, caps_;
   ShadowVolume volume_;
 };
@@ -253,8 +253,7 @@ ShadowCasters make_shadow_casters(std::span<const glm::vec3> corners) {
     ShadowCasters::Triangle triangle{{t[0], t[1], t[2]}, {}};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
-      const auto [at, fresh] =
-          known.emplace(std::uint64_t(a) << 32 | b, std::uint32_t(casters.edges.size()));
+      const auto [at, fresh] = known.emplace(std::uint64_t(a) << 32 | b, std::uint32_t(casters.edges.size()));
       if (fresh) casters.edges.push_back({a, b});
       triangle.sides[k] = {at->second, t[k] == a ? 1 : -1};
     }

@@ -1,4 +1,5 @@
-// Shadow volumes of triangle meshes (Crow 1977; Bergeron 1986 for meshes that are not closed): no OpenGL here.
+// Shadow volumes of triangle meshes (Crow 1977; Bergeron 1986 for meshes that are not closed): no OpenGL
+// here.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@
 
 namespace catoptra::render {
 
-/// Triangles that cast shadows, corners at the same place being one vertex. Body by body: those of a body hang
-/// together by common vertices, which decides nothing but what can be left out of a view as a whole.
+/// Triangles that cast shadows, corners at the same place being one vertex. Body by body: those of a body
+/// hang together by common vertices, which decides nothing but what can be left out of a view as a whole.
 struct ShadowCasters {
   struct Edge {
     std::uint32_t a, b;  ///< a < b
@@ -46,10 +47,11 @@ struct ShadowCasters {
 
 /// The volume in which triangles cast shadows: a closed surface that every way from a point to far outside
 /// crosses outwards more often than inwards, by one for each triangle between the point and the light. All
-/// triangles are turned to face the light, and each edge counts as often as the triangles at it do not cancel,
-/// so it makes no difference whether a mesh is closed, in which sense its triangles run, or how many of them
-/// share an edge. Of closed bodies that the light is not inside of (as far as their box tells) the triangles
-/// turned to the light do alone, with half the volume: a ray that leaves such a body has entered it.
+/// triangles are turned to face the light, and each edge counts as often as the triangles at it do not
+/// cancel, so it makes no difference whether a mesh is closed, in which sense its triangles run, or how many
+/// of them share an edge. Of closed bodies that the light is not inside of (as far as their box tells) the
+/// triangles turned to the light do alone, with half the volume: a ray that leaves such a body has entered
+/// it.
 struct ShadowVolume {
   /// Some triangles of one body.
   struct Part {
@@ -63,8 +65,8 @@ struct ShadowVolume {
     std::size_t first, count;  ///< parts
     std::size_t most;
   };
-  /// Triangles, their outer side anticlockwise. 2 i is caster vertex i, 2 i + 1 the same vertex moved away from
-  /// the light to infinity.
+  /// Triangles, their outer side anticlockwise. 2 i is caster vertex i, 2 i + 1 the same vertex moved away
+  /// from the light to infinity.
   std::vector<std::uint32_t> indices;
   std::vector<Part> parts;
   std::vector<Batch> batches;

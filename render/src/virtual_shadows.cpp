@@ -70,7 +70,8 @@ template <typename Each>
 void for_each_inside(const TriangleSoup& soup, std::span<const glm::dvec4> planes, const Each& each) {
   for (std::size_t i = 0; i + 2 < soup.size(); i += 3) {
     ConvexPolygon polygon{glm::dvec3(soup[i]), glm::dvec3(soup[i + 1]), glm::dvec3(soup[i + 2])};
-    if (std::ranges::any_of(planes, [&](const glm::dvec4& plane) { return beyond(polygon, plane); })) continue;
+    if (std::ranges::any_of(planes, [&](const glm::dvec4& plane) { return beyond(polygon, plane); }))
+      continue;
     for (const glm::dvec4& plane : planes)
       if (!polygon.empty()) polygon = optics::clip(polygon, plane);
     if (!polygon.empty()) each(polygon);
@@ -79,7 +80,8 @@ void for_each_inside(const TriangleSoup& soup, std::span<const glm::dvec4> plane
 
 class Casters {
  public:
-  Casters(std::span<const TriangleSoup> casters, const LightPlace& source, std::span<const VirtualLight> lights)
+  Casters(std::span<const TriangleSoup> casters, const LightPlace& source,
+          std::span<const VirtualLight> lights)
       : casters_(casters), source_(source), lights_(lights) {}
 
   TriangleSoup of(std::size_t index) const {

@@ -36,7 +36,8 @@ render::Light sun(const glm::dvec3& direction) {
 }
 
 render::Light lamp(const glm::dvec3& at, double radius_mm = 0) {
-  return {radius_mm > 0 ? LightKind::area : LightKind::point, {0, 0, -1}, at, glm::vec3(1), 1, radius_mm, true};
+  return {
+      radius_mm > 0 ? LightKind::area : LightKind::point, {0, 0, -1}, at, glm::vec3(1), 1, radius_mm, true};
 }
 
 Frame picture(const Scene& scene, Mode mode = Mode::pvrr, FrameOptions options = {}) {
@@ -134,10 +135,11 @@ TEST(RasterShadows, AgreeWithTheRayTracer) {
         ++compared;
         off += glm::length(glm::vec3(frame.color[i] - reference.color[i])) > 0.05f;
       }
-      std::printf("%s, %d samples: %zu of %zu pixels off\n", std::string(mode_name(mode)).c_str(), multisample, off,
-                  compared);
+      std::printf("%s, %d samples: %zu of %zu pixels off\n", std::string(mode_name(mode)).c_str(),
+                  multisample, off, compared);
       // Outlines of bodies and shadows, which multisampling smooths.
-      EXPECT_LT(double(off), (multisample > 1 ? 0.06 : 0.03) * double(compared)) << mode_name(mode) << ' ' << multisample;
+      EXPECT_LT(double(off), (multisample > 1 ? 0.06 : 0.03) * double(compared))
+          << mode_name(mode) << ' ' << multisample;
     }
 }
 
@@ -157,7 +159,8 @@ optics::Optic upright(optics::OpticKind kind) {
   return optic;
 }
 
-// The regions of the 1994 paper's Figure 2: light comes from x > 0, one box stands before the optic, one behind it.
+// The regions of the 1994 paper's Figure 2: light comes from x > 0, one box stands before the optic, one
+// behind it.
 TEST(RasterShadows, RegionsOfTheLightVolumeAreThoseOfTheRayTracer) {
   for (const auto kind : {optics::OpticKind::mirror, optics::OpticKind::refractor, optics::OpticKind::pane})
     for (const bool point : {false, true}) {
@@ -180,7 +183,8 @@ TEST(RasterShadows, RegionsOfTheLightVolumeAreThoseOfTheRayTracer) {
       std::printf("%s %s: %zu of %zu pixels off, %zu by tinted light\n", optics::kind_name(kind),
                   point ? "point" : "sun", off, compared, by_optic);
       EXPECT_GT(compared, frame.color.size() / 2);
-      // At edges of shadows rounding decides a few pixels (2 to 24 of 40,000 were seen); a missing shadow is thousands.
+      // At edges of shadows rounding decides a few pixels (2 to 24 of 40,000 were seen); a missing shadow is
+      // thousands.
       EXPECT_LT(double(off), 0.002 * double(compared)) << kind_name(kind) << (point ? " point" : " sun");
       if (kind != optics::OpticKind::mirror) {
         EXPECT_GT(by_optic, 500u) << "tinted light has to be seen";
@@ -196,8 +200,8 @@ double disc_share(double c) {
 }
 
 TEST(RasterShadows, PenumbraOfADiscConvergesBothWays) {
-  // A disc lamp of radius 200 at 2000 over a half plane's edge at x = 0, z = 1000: at x on the ground the edge cuts
-  // the disc at x_d = -x.
+  // A disc lamp of radius 200 at 2000 over a half plane's edge at x = 0, z = 1000: at x on the ground the
+  // edge cuts the disc at x_d = -x.
   for (const auto way : {render::SoftShadows::points, render::SoftShadows::levels}) {
     double before = 1;
     for (const int samples : {4, 16, 64}) {
@@ -219,7 +223,8 @@ TEST(RasterShadows, PenumbraOfADiscConvergesBothWays) {
         sum += std::pow(seen - disc_share(x / 200), 2);
       }
       const double error = std::sqrt(sum / count);
-      RecordProperty("rms_" + std::to_string(int(way)) + "_" + std::to_string(samples), std::to_string(error));
+      RecordProperty("rms_" + std::to_string(int(way)) + "_" + std::to_string(samples),
+                     std::to_string(error));
       std::printf("way %d, %d points: rms %.4f\n", int(way), samples, error);
       EXPECT_LT(error, 0.75 * before);
       before = error;

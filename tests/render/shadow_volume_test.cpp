@@ -18,9 +18,9 @@ namespace {
 
 using Corners = std::vector<glm::vec3>;
 
-/// +1 or -1 where the segment from `p` along `d` (to infinity) crosses the triangle, whose corner (x, w) lies at
-/// x / w or for w = 0 at infinity; + where it leaves by the outer side. Written with homogeneous determinants,
-/// so that it needs no clipping.
+/// +1 or -1 where the segment from `p` along `d` (to infinity) crosses the triangle, whose corner (x, w) lies
+/// at x / w or for w = 0 at infinity; + where it leaves by the outer side. Written with homogeneous
+/// determinants, so that it needs no clipping.
 int crossing(const glm::dvec3& p, const glm::dvec3& d, const std::array<glm::dvec4, 3>& t) {
   const auto relative = [&](const glm::dvec4& v) { return glm::dvec3(v) - v.w * p; };
   const glm::dvec3 a = relative(t[0]), b = relative(t[1]), c = relative(t[2]);
@@ -51,8 +51,8 @@ int count_in_volume(const ShadowCasters& casters, const ShadowVolume& volume, co
   return count;
 }
 
-/// Triangles that the segment from the point to the light crosses, with Moeller and Trumbore's test; and those of
-/// them that face the light.
+/// Triangles that the segment from the point to the light crosses, with Moeller and Trumbore's test; and
+/// those of them that face the light.
 struct Between {
   int all = 0, facing = 0;
 };
@@ -143,7 +143,8 @@ void expect_counts(const Corners& corners, std::mt19937& random, const Expected&
       const glm::dvec3 point(at(random), at(random), at(random)), way(at(random), at(random), at(random));
       const Between found = between(corners, light, point);
       const int count = count_in_volume(casters, volume, light, point, way);
-      ASSERT_EQ(count, expected(found)) << "light " << light.x << ' ' << light.y << ' ' << light.z << ' ' << light.w;
+      ASSERT_EQ(count, expected(found))
+          << "light " << light.x << ' ' << light.y << ' ' << light.z << ' ' << light.w;
       ASSERT_EQ(count != 0, found.all != 0);
       shadowed += count != 0;
     }
@@ -191,7 +192,8 @@ TEST(ShadowVolume, InsideOutBodiesAndLightsWithinAreRight) {
   const ShadowCasters casters = make_shadow_casters(inside_out);
   EXPECT_EQ(casters.bodies.at(0).outside, -1);
   std::uniform_real_distribution<double> at(-200, 200);
-  for (const glm::dvec4& light : {glm::dvec4(10, 10, 40, 1), glm::dvec4(300, 10, 40, 1), glm::dvec4(0, 0, 1, 0)}) {
+  for (const glm::dvec4& light :
+       {glm::dvec4(10, 10, 40, 1), glm::dvec4(300, 10, 40, 1), glm::dvec4(0, 0, 1, 0)}) {
     const ShadowVolume volume = make_shadow_volume(casters, light);
     for (int i = 0; i < 500; ++i) {
       const glm::dvec3 point(at(random), at(random), at(random)), way(at(random), at(random), at(random));
