@@ -276,6 +276,7 @@ void RasterShadows::draw(const RasterView& view, int multisample, const std::fun
     target_.clear();
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_depth();
+    glDisable(GL_CLIP_DISTANCE0);  // of the view; not every program below writes it
     Counting counting{view, view.depth_of_near < view.depth_of_far};
     glEnable(GL_STENCIL_TEST);
     glDepthMask(GL_FALSE);
