@@ -21,7 +21,7 @@ layout(binding = 4) uniform sampler2D reflected_detail;
 layout(location = 9) uniform ivec4 passed_grid;
 layout(location = 10) uniform float index_ratio;   // n_to / n_from
 layout(location = 11) uniform vec3 tint;
-layout(location = 12) uniform bvec2 has_map;        // of reflected, of passed light
+layout(location = 12) uniform bvec3 has_map;        // of reflected, of passed light; z: all light is reflected
 layout(location = 13) uniform vec3 passed_eye;      // eye of the passed light's map, relative to that of the view
 layout(location = 14) uniform vec2 fog;             // log of what 1 mm leaves, and near distance of that map
 layout(location = 15) uniform vec4 face;            // plane: dot(face.xyz, relative) = face.w
@@ -90,7 +90,7 @@ void main() {
   reflected = 2.0 * reflected / (1.0 + reflected);
 #endif
   // Where the face as a whole counts as beyond the critical angle all light is reflected.
-  if (!has_map.y) reflected = 1.0;
+  if (has_map.z) reflected = 1.0;
   seen = vec3(0.0);
   if (has_map.y && reflected < 1.0) seen += (1.0 - reflected) * tint * passed_light();
   if (has_map.x) seen += reflected * texelFetch(reflected_color, at, 0).rgb;
@@ -98,7 +98,13 @@ void main() {
   seen = works ? reflectance * texelFetch(reflected_color, at, 0).rgb
                : shade(vec3(back_albedo), vec3(0.0), normal, v_relative);
 #endif
-  if (surface_albedo.w > 0.0)
+  // The back of a one-sided mirror is that body alone.
+#ifdef GLASS
+  bool covered = surface_albedo.w > 0.0;
+#else
+  bool covered = works && surface_albedo.w > 0.0;
+#endif
+  if (covered)
     seen = mix(seen, shade(surface_albedo.rgb, vec3(0.0), normal, v_relative), surface_albedo.w);
   out_color = vec4(seen, 1.0);
 #ifdef GEOMETRY
@@ -110,8 +116,11 @@ void main() {
     vec3 along = passed_along(start);
     write_geometry(texelFetch(passed_position, passed_at, 0), texelFetch(passed_detail_map, passed_at, 0),
                    passed_eye + start * along);
-  } else {
+  } else if (has_map.x) {
     write_geometry(texelFetch(reflected_position, at, 0), texelFetch(reflected_detail, at, 0), v_relative);
+  } else {
+    out_position = vec4(v_relative + origin.xyz, 1.0);
+    out_detail = body;
   }
 #else
   if (works) {

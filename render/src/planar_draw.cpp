@@ -67,7 +67,9 @@ void PlanarDraw::set_glass(const PlanarOptic& drawn, const RasterView& view, boo
   const bool passes = drawn.has_map(PlanarOptic::kPassed);
   glUniform1f(kIndexRatio, static_cast<float>(drawn.index_ratio()));
   set_vec3(kTint, material.tint);
-  glUniform2i(kHasMap, drawn.has_map(PlanarOptic::kReflected) ? 1 : 0, passes ? 1 : 0);
+  // Black glass passes nothing, and reflects no more than clear glass for that.
+  const bool all_reflected = !passes && glm::dot(material.tint, material.tint) > 0;
+  glUniform3i(kHasMap, drawn.has_map(PlanarOptic::kReflected) ? 1 : 0, passes ? 1 : 0, all_reflected ? 1 : 0);
   set_vec3(kFogAlbedo, material.color);
   if (!passes) return;
   set_grid(kPassedGrid, drawn.rect(), view.corner, false);

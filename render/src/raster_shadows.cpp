@@ -305,7 +305,10 @@ void RasterShadows::count_direct(Counting& counting, std::size_t point, int bit)
 }
 
 void RasterShadows::count_beam(Counting& counting, const Beam& beam, int bit) {
-  count(counting, beam.light_volume, bit);
+  // Its pieces lie beside each other, so that counts stay small however many there are; a fold between them
+  // would take the light from where it is.
+  for (const ShadowVolume::Batch& batch : beam.light_volume.volume.batches)
+    draw_volume(counting, beam.light_volume, batch);
   // Where the light volume is not, the light is not.
   const bool anywhere = counting.most > 0;
   fold(counting, bit, false);

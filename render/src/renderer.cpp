@@ -21,6 +21,7 @@
 #include "render/src/ray_tracer.h"
 #include "render/src/sample_mean.h"
 #include "render/src/sampling.h"
+#include "render/src/scene_lights.h"
 #include "render/src/shading.h"
 #include "render/src/textures.h"
 #include "render/src/wrong_share.h"
@@ -104,6 +105,7 @@ struct Renderer::Impl {
     }
     rays.commit();
     tracer = std::make_unique<RayTracer>(scene, textures, rays);
+    light_limit = light_warning(scene, scene_lights(scene));
   }
 
   ~Impl() {
@@ -118,7 +120,13 @@ struct Renderer::Impl {
 
   /// Samples until there are `until` of them, and their mean.
   RenderResult render_until(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
-    if (mode == Mode::raytrace) return draw_samples(mode, camera, options, until);
+    RenderResult result = mode == Mode::raytrace ? draw_samples(mode, camera, options, until)
+                                                 : raster_until(mode, camera, options, until);
+    if (light_limit) result.warnings.push_back(*light_limit);
+    return result;
+  }
+
+  RenderResult raster_until(Mode mode, const Camera& camera, const FrameOptions& options, int until) {
     if (!context) context = GlContext::create();
     const GlScope scope(*context);
     if (!gpu) {
@@ -281,6 +289,7 @@ struct Renderer::Impl {
   std::vector<bool> untraced;           ///< optics that the tracer still has where or as they were
   std::unique_ptr<RayTracer> tracer;
 
+  std::optional<std::string> light_limit;  ///< what is left out of the light by way of planar optics
   std::unique_ptr<GlContext> context;
   std::unique_ptr<Gpu> gpu;
 

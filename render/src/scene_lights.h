@@ -3,6 +3,8 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "optics/light_path.h"
@@ -23,11 +25,19 @@ struct LightPoint {
 
 struct SceneLights {
   std::vector<optics::LightFace> faces;  ///< of the planar optics
-  std::vector<LightPoint> points;         ///< in the order of Scene::lights
+  std::vector<LightPoint> points;        ///< in the order of Scene::lights
+  int depth = 0;                         ///< greatest number of faces in a sequence that is followed
 };
 
-/// Sequences of at most RenderSettings::depth faces; RenderSettings::soft_shadow_samples points for a light
+/// So many virtual lights at most, over all points: each costs shadow rays, or a bit in every pixel.
+inline constexpr std::size_t kMostVirtualLights = 1024;
+
+/// Sequences of at most RenderSettings::depth faces, and of fewer where there would be more than
+/// kMostVirtualLights; RenderSettings::soft_shadow_samples points for a light
 /// with a radius that casts shadows, one for others. Throws Error where a planar optic is not flat.
 [[nodiscard]] SceneLights scene_lights(const Scene& scene);
+
+/// What that limit leaves out, for the user.
+[[nodiscard]] std::optional<std::string> light_warning(const Scene& scene, const SceneLights& lights);
 
 }  // namespace catoptra::render

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "render/src/scene_lights.h"
 #include "tests/render/ray_light_scenes.h"
 
 namespace catoptra {
@@ -191,6 +192,33 @@ TEST(OpticLight, ALampUnderAFaceOfWater) {
   scene.lights.push_back({render::LightKind::point, {}, {0, 0, -300}});
   const test::TracedScene traced(std::move(scene));
   EXPECT_NEAR(irradiance(traced, {1e-3, 0, 400}, {0, 0, -20}), 0.96 / 2.25 * 1e6 / (600.0 * 600), 1e-5);
+}
+
+/// Facing mirrors make two virtual lights of each point at every further reflection.
+TEST(OpticLight, TooManyVirtualLightsEndAtALowerDepthAndAreReported) {
+  render::Scene scene = test::dark_scene();
+  scene.optics.push_back(test::square_optic(OpticKind::mirror, 500, {-300, 0, 0}, {1, 0, 0}));
+  scene.optics.push_back(test::square_optic(OpticKind::mirror, 500, {300, 0, 0}, {-1, 0, 0}));
+  render::Light lamp;
+  lamp.kind = render::LightKind::area;
+  lamp.position_mm = {20, 0, 0};
+  lamp.radius_mm = 10;
+  scene.lights.push_back(lamp);
+  scene.settings.depth = 3;
+  const auto lights_with = [&](int samples) {
+    scene.settings.soft_shadow_samples = samples;
+    return render::scene_lights(scene);
+  };
+  const render::SceneLights few = lights_with(10);
+  EXPECT_EQ(few.depth, 3);
+  EXPECT_EQ(few.points[0].virtual_lights.size(), 6u);
+  EXPECT_FALSE(render::light_warning(scene, few));
+  const render::SceneLights many = lights_with(400);
+  EXPECT_EQ(many.depth, 1);
+  EXPECT_EQ(many.points[0].virtual_lights.size(), 2u);
+  const auto warning = render::light_warning(scene, many);
+  ASSERT_TRUE(warning);
+  EXPECT_NE(warning->find("over 1 instead of 3 planar optics"), std::string::npos) << *warning;
 }
 
 }  // namespace
