@@ -64,7 +64,9 @@ glm::dmat3 cropped(glm::ivec2 size, const PixelRect& rect, bool mirrored) {
 /// Rows are the axes of an eye that looks along `ahead`, turned about it as that of `above` is.
 glm::dmat3 axes_along(const glm::dvec3& ahead, const RasterView& above) {
   const glm::dmat3 to_world = glm::transpose(above.rotation);
-  const glm::dvec3 right = glm::normalize(glm::cross(ahead, to_world[1]));
+  glm::dvec3 right = glm::cross(ahead, to_world[1]);
+  if (glm::length(right) < 1e-6) right = to_world[0] - glm::dot(to_world[0], ahead) * ahead;
+  right = glm::normalize(right);
   return glm::transpose(glm::dmat3(right, glm::cross(right, ahead), -ahead));
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -238,10 +239,16 @@ TEST(RasterShadows, SameBytesWhateverWasKept) {
   Scene scene = room();
   scene.optics.push_back(conic_mirror(1200, 0, 200, 150, 17, 17));
   scene.camera.resolution = {80, 60};
-  FrameOptions keep, anew;
-  anew.reuse_static = false;
-  anew.threads = 1;
-  EXPECT_EQ(picture(scene, Mode::pvrr, keep).color, picture(scene, Mode::pvrr, anew).color);
+  render::Renderer renderer(scene);
+  FrameOptions options = picture_of(scene);
+  const auto first = renderer.render(Mode::pvrr, scene.camera, options).frame.color;
+  renderer.place_optic(0, glm::translate(glm::dmat4(1), glm::dvec3(40, 0, 60)));
+  EXPECT_NE(renderer.render(Mode::pvrr, scene.camera, options).frame.color, first);
+  renderer.place_optic(0, glm::dmat4(1));
+  EXPECT_EQ(renderer.render(Mode::pvrr, scene.camera, options).frame.color, first);
+  options.reuse_static = false;
+  options.threads = 1;
+  EXPECT_EQ(render::Renderer(scene).render(Mode::pvrr, scene.camera, options).frame.color, first);
 }
 
 TEST(RasterShadows, ScenesWithoutShadowsPayNothing) {
