@@ -19,9 +19,8 @@ cp "$work/report.json" out/report.json
 font=$(sed -n 's/^CATOPTRA_SIGN_FONT:[^=]*=//p' build/CMakeCache.txt)
 tiles=()
 for mode in raytrace pvrr exact auto hybrid cubemap; do
-  oiiotool "$work/$mode.png" --cut 820x640+300+40 --resize 615x480 --fill:color=0,0,0 140x34+0+446 \
-    --text:x=12:y=471:size=24:font="$font" "$mode" -o "$work/tile_$mode.png"
-  tiles+=("$work/tile_$mode.png")
+  tiles+=("$work/$mode.png" --cut 820x640+300+40 --resize:filter=triangle 615x480 --fill:color=0,0,0 140x34+0+446
+    --text:x=12:y=471:size=24:font="$font" "$mode")
 done
 oiiotool "${tiles[@]}" --mosaic:pad=6 3x2 -o out/modes.png
 
