@@ -84,15 +84,25 @@ std::vector<Sight> sights_of(const Optic& optic, const Pyramid& picture) {
   return sights;
 }
 
-std::string mirror_warning(const Optic& mirror, const std::vector<Sight>& sights) {
-  const double side = mirror.flip ? -1 : 1;
+/// Whether it works from both sides, so that no eye is behind it.
+bool works_from_both_sides(const Optic& optic) {
+  return optic.two_sided || (optics::is_planar_glass(optic) && !optic.one_sided);
+}
+
+std::string side_warning(const Optic& optic, const std::vector<Sight>& sights) {
+  if (works_from_both_sides(optic)) return {};
+  const double side = optic.flip ? -1 : 1;
   const bool faces_eye = std::any_of(sights.begin(), sights.end(), [&](const Sight& sight) {
     return side * glm::dot(sight.normal, sight.ray.direction) < 0;
   });
   if (faces_eye) return {};
-  return "mirror '" + mirror.name +
-         "' turns its back to the eye and reflects nothing (rotate_deg turns it; flip = true reflects on the "
-         "other side)";
+  const std::string name = std::string(optics::kind_name(optic.kind)) + " '" + optic.name + "'";
+  if (optics::is_planar_glass(optic))
+    return name +
+           " turns its back to the eye and is not there (one_sided = false makes it work from both sides)";
+  return name + " turns its back to the eye and reflects nothing (" +
+         (optic.planar ? "one_sided = false reflects on both sides)"
+                       : "rotate_deg turns it; flip = true reflects on the other side)");
 }
 
 std::string lens_warning(const Optic& lens, const Pyramid& picture, const std::vector<Sight>& sights) {
@@ -107,6 +117,48 @@ std::string lens_warning(const Optic& lens, const Pyramid& picture, const std::v
          "': no ray from the eye passes: it is seen from its edge, or all light is totally reflected or "
          "leaves "
          "through the rim (rotate_deg turns the lens, camera.eye moves the eye)";
+}
+
+/// Whether `by` may show `other`: what works from one side alone shows only what reaches before its surface.
+bool can_show(const Optic& by, const Optic& other) {
+  if (by.kind == optics::OpticKind::lens || works_from_both_sides(by)) return true;
+  const double side = by.flip ? -1 : 1;
+  const auto& of = other.mesh.vertices;
+  const std::size_t stride = by.mesh.vertices.size() / kMostVertices + 1,
+                    other_stride = of.size() / kMostVertices + 1;
+  for (std::size_t i = 0; i < by.mesh.vertices.size(); i += stride)
+    for (std::size_t j = 0; j < of.size(); j += other_stride)
+      if (side * glm::dot(by.mesh.vertices[i].normal, of[j].position_mm - by.mesh.vertices[i].position_mm) >
+          0)
+        return true;
+  return false;
+}
+
+/// Which optics may be shown by another one that shows itself: `seen` are those in the picture that work
+/// towards the eye. A path has at most `depth` optics.
+std::vector<bool> shown_by_others(const std::vector<Optic>& optics, const std::vector<bool>& seen,
+                                  int depth) {
+  std::vector<bool> shown(optics.size()), last = seen;
+  for (int k = 1; k < depth; ++k) {
+    std::vector<bool> next(optics.size());
+    for (std::size_t i = 0; i < optics.size(); ++i)
+      for (std::size_t j = 0; j < optics.size() && !shown[i] && !next[i]; ++j)
+        next[i] = i != j && last[j] && can_show(optics[j], optics[i]);
+    if (std::none_of(next.begin(), next.end(), [](bool any) { return any; })) break;
+    for (std::size_t i = 0; i < optics.size(); ++i) shown[i] = shown[i] || next[i];
+    last = std::move(next);
+  }
+  return shown;
+}
+
+std::string view_warning(const Optic& optic, const Pyramid& picture) {
+  const std::vector<Sight> sights = sights_of(optic, picture);
+  if (sights.empty())
+    return std::string(optics::kind_name(optic.kind)) + " '" + optic.name +
+           "' lies outside the picture (see camera.eye, camera.target, camera.fov_deg and " +
+           (optic.planar ? "the place of its corners or file)" : "its translate)");
+  return optic.kind == optics::OpticKind::lens ? lens_warning(optic, picture, sights)
+                                               : side_warning(optic, sights);
 }
 
 }  // namespace
@@ -130,21 +182,19 @@ bool inside_lens(const Optic& lens, const glm::dvec3& point_mm) {
 
 std::vector<std::string> optic_view_warnings(const render::Scene& scene) {
   const Pyramid picture(scene.camera);
-  std::vector<std::string> warnings;
+  std::vector<std::string> of_optic;
+  std::vector<bool> seen;
   for (const Optic& optic : scene.optics) {
-    const bool is_lens = optic.kind == optics::OpticKind::lens;
-    const std::string name = std::string(is_lens ? "lens" : "mirror") + " '" + optic.name + "'";
-    if (is_lens && inside_lens(optic, picture.eye()))
-      throw Error(scene.file, name, "the eye lies inside the glass",
+    if (optic.kind == optics::OpticKind::lens && inside_lens(optic, picture.eye()))
+      throw Error(scene.file, "lens '" + optic.name + "'", "the eye lies inside the glass",
                   "move camera.eye out of it, or the lens by translate");
-    const std::vector<Sight> sights = sights_of(optic, picture);
-    std::string warning = sights.empty() ? name +
-                                               " lies outside the picture (see camera.eye, camera.target, "
-                                               "camera.fov_deg and its translate)"
-                          : is_lens ? lens_warning(optic, picture, sights)
-                                    : mirror_warning(optic, sights);
-    if (!warning.empty()) warnings.push_back(std::move(warning));
+    of_optic.push_back(view_warning(optic, picture));
+    seen.push_back(of_optic.back().empty());
   }
+  const std::vector<bool> shown = shown_by_others(scene.optics, seen, scene.settings.depth);
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < of_optic.size(); ++i)
+    if (!of_optic[i].empty() && !shown[i]) warnings.push_back(std::move(of_optic[i]));
   return warnings;
 }
 

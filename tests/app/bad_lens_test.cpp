@@ -217,6 +217,44 @@ TEST(BadLensView, MirrorFromItsBack) {
   EXPECT_EQ(draw(folder, keys + "rotate_deg = [0, 180, 0]\n", "raytrace").result.errors, "");
 }
 
+/// A square of 120 mm across the view, `x_mm` to the side. Its front looks away from the eye.
+std::string square(const char* kind, double z_mm, double x_mm = 0) {
+  const auto corner = [&](double x, double y) {
+    return "[" + std::to_string(x_mm + x) + ", " + std::to_string(y) + ", " + std::to_string(z_mm) + "]";
+  };
+  return "[[planar]]\nkind = \"" + std::string(kind) + "\"\ncorners = [" + corner(-60, -60) + ", " +
+         corner(60, -60) + ", " + corner(60, 60) + ", " + corner(-60, 60) + "]\n";
+}
+
+TEST(BadLensView, PlanarOpticFromItsBack) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"mirror", "refractor", "pane"}) {
+    const std::string keys = square(kind, 300);
+    EXPECT_EQ(draw(folder, keys, "raytrace").result.errors, "") << kind << " works from both sides";
+    const Drawn drawn = draw(folder, keys + "one_sided = true\n", "raytrace");
+    expect_warning(drawn, std::string(kind) + " 'planar' turns its back to the eye");
+    EXPECT_NE(drawn.result.errors.find("one_sided = false"), std::string::npos) << drawn.result.errors;
+    EXPECT_EQ(drawn.result.errors.find("rotate_deg"), std::string::npos) << "[[planar]] has no such key here";
+  }
+}
+
+/// Behind the eye, a mirror shows in one before the eye: at depth 1 it does not.
+TEST(BadLensView, SeenInAnotherOpticOnly) {
+  const TemporaryFolder folder;
+  const std::string behind = square("mirror", -100), before = square("mirror", 300);
+  const auto depth = [](int n) { return "[render]\ndepth = " + std::to_string(n) + "\n"; };
+  EXPECT_EQ(draw(folder, before + behind + depth(2), "raytrace").result.errors, "");
+  expect_warning(draw(folder, before + behind + depth(1), "raytrace"), "lies outside the picture");
+  // A mirror that shows one side shows nothing that lies behind it.
+  write_test_mirror(folder, 400);
+  const std::string convex =
+      "[[mirror]]\nfile = \"mirror.step\"\nfaces = [\"Glass\"]\nrotate_deg = [0, 180, 0]\ntranslate = [0, 0, "
+      "300]\n";
+  EXPECT_EQ(draw(folder, convex + behind, "raytrace").result.errors, "");
+  expect_warning(draw(folder, convex + square("mirror", 1000, 1000), "raytrace"),
+                 "mirror 'planar' lies outside the picture");
+}
+
 TEST(BadLensView, LensAroundTheEye) {
   const TemporaryFolder folder;
   write_biconcave(folder);
