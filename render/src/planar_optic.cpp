@@ -186,10 +186,10 @@ optics::Plane PlanarOptic::tilted(const glm::dvec3& eye_mm, int sample) const {
   optics::Plane plane = plane_;
   plane.normal = glm::dot(plane_.normal, placement_.direction(face_.normal)) > 0 ? front : -front;
   // One map has one plane: where the other side would turn to any ray of it, none is tilted.
-  const bool same_side = plane.height_mm(eye_mm) > 0 &&
-                         std::all_of(seen_.begin(), seen_.end(), [&](const glm::dvec3& corner) {
-                           return glm::dot(plane.normal, corner - eye_mm) < 0;
-                         });
+  const bool same_side =
+      plane.height_mm(eye_mm) > 0 && std::all_of(seen_.begin(), seen_.end(), [&](const glm::dvec3& corner) {
+        return glm::dot(plane.normal, corner - eye_mm) < 0;
+      });
   return same_side ? plane : plane_;
 }
 

@@ -157,8 +157,7 @@ void TracedPlanars::meet_tilted(const BeamLanes& beams, const int (&optic)[kLane
   for (int i = 0; i < kLanes; ++i) {
     if (optic[i] < 0 || !is_rough(scene_.optics[std::size_t(optic[i])])) continue;
     const optics::PlanarFace& face = faces_[std::size_t(optic[i])];
-    const glm::dvec2 tilt =
-        rough_tilt(scene_.optics[std::size_t(optic[i])].material.roughness_rad, sample);
+    const glm::dvec2 tilt = rough_tilt(scene_.optics[std::size_t(optic[i])].material.roughness_rad, sample);
     const glm::dvec3 normal = optics::tilted_normal(face, tilt);
     const glm::dvec3 d = beams.direction.at(i), from = beams.point.at(i);
     // The ray, if need be beyond where it starts, has to come from the same side.

@@ -29,12 +29,13 @@ Scene posts_before_a_mirror(OpticKind kind = OpticKind::mirror, bool from_behind
 double psnr_db(const Scene& scene, const Scene& reference) {
   const Frame exact =
       Renderer(reference).render(Mode::raytrace, scene.camera, picture_of(scene, 16, false)).frame;
-  return image_error(
-             exact, Renderer(scene).render(Mode::pvrr, scene.camera, picture_of(scene, 16, false)).frame)
+  return image_error(exact,
+                     Renderer(scene).render(Mode::pvrr, scene.camera, picture_of(scene, 16, false)).frame)
       .psnr_db;
 }
 
-// Each sample's map lies on the picture's own grid, as that of a smooth mirror (PvrrPlane): the same promise.
+// Each sample's map lies on the picture's own grid, as that of a smooth mirror (PvrrPlane): the same promise
+// as there. 47 dB and more are measured, 21 dB without tilts.
 TEST(RoughPlanar, MirrorAgreesWithTheRayTracerOver16Samples) {
   for (const bool from_behind : {false, true}) {
     const Scene scene = posts_before_a_mirror(OpticKind::mirror, from_behind);
@@ -73,7 +74,8 @@ TEST(RoughPlanar, FirstSampleIsNotTilted) {
   EXPECT_TRUE(std::equal(first.begin(), first.end(), expected.begin(), expected.end(),
                          [](const auto& a, const auto& b) { return a == b; }));
   // Nor is it after a picture of several samples, whose maps are kept.
-  EXPECT_FALSE(of_rough.render(Mode::pvrr, scene.camera, picture_of(scene, 4, false)).frame.color == expected);
+  EXPECT_FALSE(of_rough.render(Mode::pvrr, scene.camera, picture_of(scene, 4, false)).frame.color ==
+               expected);
   EXPECT_TRUE(shown(of_rough) == expected);
 }
 
