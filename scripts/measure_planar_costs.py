@@ -154,6 +154,15 @@ def charts_of(series):
     return charts
 
 
+def write_tables(path, tables):
+    """Into the page, between the comments that name each; a table without rows leaves the one there."""
+    text = path.read_text()
+    for name, part in tables.items():
+        if part.count("\n") > 1:
+            text = re.sub(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda found: f"{found[1]}{part}\n{found[2]}", text, flags=re.S)
+    path.write_text(text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--catoptra", default="build/catoptra")
@@ -161,23 +170,25 @@ def main():
     parser.add_argument("--resolution", default="640,360")
     parser.add_argument("--frames", type=int, default=5)
     parser.add_argument("--most-maps", type=int, default=400, help="unchecked maps that memory has room for: 3 MB each at 640 x 360")
+    parser.add_argument("--shadows-alone", action="store_true", help="measure that table alone")
     parser.add_argument("--docs", type=pathlib.Path, default=pathlib.Path("docs"))
     arguments = parser.parse_args()
+    rows, facing, shadows = [], [], []
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(arguments, folder)
-        rows = [bench.row(kind, faces, depth) for kind in KINDS for faces in COUNTS for depth in DEPTHS]
-        facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[1:] for depth in DEPTHS]
+        if not arguments.shadows_alone:
+            rows = [bench.row(kind, faces, depth) for kind in KINDS for faces in COUNTS for depth in DEPTHS]
+            facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[1:] for depth in DEPTHS]
         shadows = [bench.row("pane", faces, depth, shadows=True) for faces in (0, *COUNTS) for depth in (1, 2) if faces or depth == 1]
+    write_tables(arguments.docs / "planar-costs.md", {"one front": table(rows), "two fronts": table(facing), "shadows": shadow_table(shadows)})
+    if arguments.shadows_alone:
+        return
+    of_kind = lambda kind, of: [row for row in of if row["kind"] == kind]
     series = {
-        "mirrors, one front": [row for row in rows if row["kind"] == "mirror"],
-        "panes, one front": [row for row in rows if row["kind"] == "pane"],
-        "mirrors, two fronts": [row for row in facing if row["kind"] == "mirror"],
+        "mirrors, one front": of_kind("mirror", rows),
+        "panes, one front": of_kind("pane", rows),
+        "mirrors, two fronts": of_kind("mirror", facing),
     }
-    path = arguments.docs / "planar-costs.md"
-    text = path.read_text() if path.exists() else ""
-    for name, part in (("one front", table(rows)), ("two fronts", table(facing)), ("shadows", shadow_table(shadows))):
-        text = re.sub(rf"(<!-- {name} -->\n).*?\n?(<!-- end -->)", lambda found: found[1] + part + "\n" + found[2], text, flags=re.S)
-    path.write_text(text)
     (arguments.docs / "images" / "planar_costs.svg").write_text(svg(charts_of(series)))
 
 
