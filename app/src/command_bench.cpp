@@ -23,7 +23,7 @@ struct BenchOptions {
   DrawingOptions drawing;
   std::vector<std::string> modes{"pvrr", "hybrid", "exact", "raytrace", "cubemap", "auto"};
   int frames = 20, multisample = 1;
-  bool json = false;
+  bool no_visibility_checks = false, json = false;
 };
 
 struct ModeTiming {
@@ -71,6 +71,8 @@ ordered_json mode_json(const FrameTiming& timing, double raytrace_ms) {
           {"rays_per_frame", timing.rays_per_frame},
           {"vertices", timing.vertices},
           {"maps", timing.maps},
+          {"maps_pruned", timing.maps_pruned},
+          {"shadows", timing.shadows},
           {"speedup_vs_raytrace", raytrace_ms / timing.median_ms()},
           {"time_ms", pass_json(timing)}};
 }
@@ -255,6 +257,7 @@ int run_bench(const BenchOptions& options, const CommonOptions& common) {
   const auto modes = modes_with_reference(options);
   Session session(options.drawing, common);
   session.frame.multisample = options.multisample;
+  session.frame.check_visibility = !options.no_visibility_checks;
   const auto timings = time_modes(session, options, modes);
 
   const double raytrace_ms = timing_of(timings, "raytrace")->median_ms();
@@ -268,6 +271,7 @@ int run_bench(const BenchOptions& options, const CommonOptions& common) {
                       {"triangles", triangle_count(session.scene())},
                       {"frames", options.frames},
                       {"multisample", options.multisample},
+                      {"visibility_checks", !options.no_visibility_checks},
                       {"modes", by_mode}};
   add_color_ratios(session, options, timings, report);
   add_ratios(session, timings, options.frames, report);
@@ -297,6 +301,8 @@ Command add_bench_command(CLI::App& root, CommonOptions& common) {
                   "Hardware multisampling of outlines: 1, 2, 4 or 8; not in mode raytrace")
       ->check(CLI::IsMember({1, 2, 4, 8}))
       ->option_text("N");
+  app->add_flag("--no-visibility-checks", options->no_visibility_checks,
+                "Mode pvrr: maps of the whole view for all planar optics turned to the eye, seen or not");
   app->add_flag("--json", options->json, "Print JSON");
   return {app, [options, &common] { return run_bench(*options, common); }};
 }

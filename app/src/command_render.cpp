@@ -57,6 +57,8 @@ nlohmann::ordered_json report_json(const Session& session, render::Mode mode, co
                {"multisample", options.samples > 1 ? 1 : options.multisample},
                {"optics", optics_json(session.scene(), drawn_mode(mode, result), result.stats, nullptr)},
                {"maps", maps_json(result.stats)},
+               {"maps_pruned", result.stats.maps_pruned},
+               {"shadows", shadows_json(result.stats)},
                {"rays", result.stats.rays},
                {"time_ms", result.stats.time_ms},
                {"warnings", warnings},

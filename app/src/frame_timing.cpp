@@ -46,6 +46,8 @@ FrameTiming time_frames(render::Renderer& renderer, render::Mode mode, render::C
     timing.vertices = 0;
     for (const render::OpticStats& optic : result.stats.optics) timing.vertices += optic.vertices;
     timing.maps = maps_json(result.stats);
+    timing.maps_pruned = result.stats.maps_pruned;
+    timing.shadows = shadows_json(result.stats);
     timing.choice = result.choice;
   }
   progress.clear();

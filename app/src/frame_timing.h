@@ -20,6 +20,8 @@ struct FrameTiming {
   std::size_t rays_per_frame = 0;
   std::size_t vertices = 0;                  ///< of all optics' meshes as drawn last
   nlohmann::ordered_json maps;               ///< maps_json() of the last frame
+  std::size_t maps_pruned = 0;               ///< of the last frame
+  nlohmann::ordered_json shadows;            ///< shadows_json() of the last frame
   std::optional<render::ModeChoice> choice;  ///< mode automatic: of the last frame
 
   [[nodiscard]] double median_ms() const;

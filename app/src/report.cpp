@@ -79,8 +79,18 @@ ordered_json maps_json(const render::FrameStats& stats) {
                     {"drawn", map.drawn},
                     {"texels", map.texels},
                     {"rays", map.rays},
-                    {"scene_rays", map.scene_rays}});
+                    {"scene_rays", map.scene_rays},
+                    {"draws", map.draws}});
   return maps;
+}
+
+ordered_json shadows_json(const render::FrameStats& stats) {
+  const render::ShadowStats& shadows = stats.shadows;
+  return {{"views", shadows.views},
+          {"volumes", shadows.volumes},
+          {"silhouette_edges", shadows.silhouette_edges},
+          {"stencil_draws", shadows.stencil_draws},
+          {"folds", shadows.folds}};
 }
 
 ordered_json choice_json(const render::ModeChoice& choice) {

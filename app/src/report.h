@@ -30,6 +30,9 @@ inline constexpr double kIdenticalPsnr_db = 200;
 /// One entry per map of mode pvrr, of optics in the picture and in each other.
 [[nodiscard]] nlohmann::ordered_json maps_json(const render::FrameStats& stats);
 
+/// What shadows have cost in the raster modes: counts of render::ShadowStats.
+[[nodiscard]] nlohmann::ordered_json shadows_json(const render::FrameStats& stats);
+
 /// Mode `auto`: which mode drew, and why.
 [[nodiscard]] nlohmann::ordered_json choice_json(const render::ModeChoice& choice);
 

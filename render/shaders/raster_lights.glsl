@@ -24,15 +24,18 @@ layout(binding = 8) uniform sampler2DArray visibility;
 uint shadow_words[SHADOW_SAMPLES];
 int shadow_layer = -1;
 
+void fetch_shadows(int layer) {
+  if (layer == shadow_layer) return;
+  shadow_layer = layer;
+  for (int s = 0; s < SHADOW_SAMPLES; ++s)
+    shadow_words[s] = packUnorm4x8(texelFetch(visibility, ivec3(gl_FragCoord.xy, layer), s));
+}
+
 /// The share of the fragment's samples that a light reaches.
 float seen(float number) {
   int bit = int(number);
   if (bit < 0) return 1.0;
-  if (bit >> 5 != shadow_layer) {
-    shadow_layer = bit >> 5;
-    for (int s = 0; s < SHADOW_SAMPLES; ++s)
-      shadow_words[s] = packUnorm4x8(texelFetch(visibility, ivec3(gl_FragCoord.xy, shadow_layer), s));
-  }
+  fetch_shadows(bit >> 5);
 #if SHADOW_SAMPLES == 1
   return float(shadow_words[0] >> (bit & 31) & 1u);
 #else
@@ -83,6 +86,30 @@ vec3 way_share(int last, vec3 position) {
   }
   return share;
 }
+
+/// Each lights little of the scene, so only those are looked at that reach the fragment: their bits are consecutive.
+vec3 irradiance_of_virtual_lights(vec3 normal, vec3 position) {
+  vec3 irradiance = vec3(0.0);
+  int count = light_points.length() - LIGHT_POINTS;
+  if (count <= 0) return irradiance;
+  int first = int(light_points[LIGHT_POINTS].medium.w);
+  for (int layer = first >> 5; 32 * layer < first + count; ++layer) {
+    fetch_shadows(layer);
+    uint reaching = 0u;
+    for (int s = 0; s < SHADOW_SAMPLES; ++s) reaching |= shadow_words[s];
+    // Bits of points before, and of nothing behind.
+    int skipped = first - 32 * layer, used = first + count - 32 * layer;
+    if (skipped > 0) reaching &= ~0u << skipped;
+    if (used < 32) reaching &= (1u << used) - 1u;
+    for (; reaching != 0u; reaching &= reaching - 1u) {
+      int i = LIGHT_POINTS + 32 * layer + findLSB(reaching) - first;
+      float share = unit_irradiance(light_points[i].place, position, normal) * light_points[i].power.w;
+      if (share > 0.0) share *= seen(light_points[i].medium.w);
+      if (share > 0.0) irradiance += light_points[i].power.rgb * share * way_share(i, position);
+    }
+  }
+  return irradiance;
+}
 #endif
 
 vec3 irradiance_of_lights(vec3 normal, vec3 position) {
@@ -93,11 +120,7 @@ vec3 irradiance_of_lights(vec3 normal, vec3 position) {
     if (unit > 0.0) irradiance += light_points[i].power.rgb * (unit * seen(light_points[i].medium.w));
   }
 #ifdef VIRTUAL_LIGHTS
-  for (int i = LIGHT_POINTS; i < light_points.length(); ++i) {
-    float share = unit_irradiance(light_points[i].place, position, normal) * light_points[i].power.w;
-    if (share > 0.0) share *= seen(light_points[i].medium.w);
-    if (share > 0.0) irradiance += light_points[i].power.rgb * share * way_share(i, position);
-  }
+  irradiance += irradiance_of_virtual_lights(normal, position);
 #endif
   return irradiance;
 }

@@ -6,6 +6,7 @@
 
 #include "optics/reflection.h"
 #include "optics/refraction.h"
+#include "render/src/sampling.h"
 
 namespace catoptra::render {
 namespace {
@@ -62,6 +63,12 @@ std::optional<optics::Arrival> PlanarOptic::MirroredLight::light_to(const glm::d
 PlanarOptic::PlanarOptic(const Scene& scene, std::size_t optic, RasterScene& raster)
     : scene_(scene), optic_(scene.optics[optic]), index_(optic), raster_(raster) {
   maps_.resize(optics::is_planar_glass(optic_) ? 2 : 1);
+  optic_changed();
+}
+
+void PlanarOptic::optic_changed() {
+  face_ = optics::planar_face(optic_);
+  map_changed();
 }
 
 void PlanarOptic::map_changed() {
@@ -96,7 +103,8 @@ bool PlanarOptic::update(const RasterView& camera, const FrameOptions& options, 
   for (Map& map : maps_) map.turn.reset();
   if (!see(camera, sight)) return false;
   if (works_) set_turns(camera, sight);
-  light_.set(sight.above, plane_);
+  const auto& turn = maps_[kReflected].turn;
+  light_.set(sight.above, turn ? turn->plane : plane_);
   return true;
 }
 
@@ -120,14 +128,11 @@ void PlanarOptic::set_turns(const RasterView& camera, const PlanarSight& sight) 
   if (optic_.material.material_alpha > 1 - kLeastShare) return;
   if (optic_.kind != OpticKind::mirror) maps_[kPassed].turn = passed_turn(camera);
   if (optic_.kind == OpticKind::mirror || !maps_[kPassed].turn || reflection_matters(camera))
-    maps_[kReflected].turn = PlanarTurn{PlanarWay::reflected, tilted(sight.tilt), {}, {}};
-  double least = optics::kInfinity;
-  for (const glm::dvec3& p : seen_) least = std::min(least, camera.pixel(p).z);
-  if (seen_.empty()) least = 1;
+    maps_[kReflected].turn = PlanarTurn{PlanarWay::reflected, tilted(camera.origin_mm, sight.sample), {}, {}};
   for (std::size_t k = 0; k < maps_.size(); ++k) {
     Map& map = maps_[k];
     if (!map.turn) continue;
-    map.near = kNear * least;
+    map.near = kNear * least_w(camera, *map.turn);
     if (map.turn->way == PlanarWay::displaced) {
       // w is that of the view less the part by which the eye is nearer to the plane.
       const double nearer = plane_.height_mm(map.turn->eye_mm) / plane_.height_mm(camera.origin_mm);
@@ -174,16 +179,38 @@ bool PlanarOptic::reflection_matters(const RasterView& camera) const {
   });
 }
 
-optics::Plane PlanarOptic::tilted(glm::dvec2) const {
-  return plane_;
+optics::Plane PlanarOptic::tilted(const glm::dvec3& eye_mm, int sample) const {
+  if (sample == 0 || optic_.material.roughness_rad == glm::dvec2(0)) return plane_;
+  const glm::dvec3 front =
+      placement_.direction(optics::tilted_normal(face_, rough_tilt(optic_.material.roughness_rad, sample)));
+  optics::Plane plane = plane_;
+  plane.normal = glm::dot(plane_.normal, placement_.direction(face_.normal)) > 0 ? front : -front;
+  // One map has one plane: where the other side would turn to any ray of it, none is tilted.
+  const bool same_side =
+      plane.height_mm(eye_mm) > 0 && std::all_of(seen_.begin(), seen_.end(), [&](const glm::dvec3& corner) {
+        return glm::dot(plane.normal, corner - eye_mm) < 0;
+      });
+  return same_side ? plane : plane_;
+}
+
+double PlanarOptic::least_w(const RasterView& camera, const PlanarTurn& turn) const {
+  double least = optics::kInfinity;
+  for (const glm::dvec3& p : seen_) {
+    // Where the line of sight meets the plane, which for rough faces is not that of the outline.
+    const double way =
+        turn.plane.height_mm(camera.origin_mm) / glm::dot(camera.origin_mm - p, turn.plane.normal);
+    least = std::min(least, way * camera.pixel(p).z);
+  }
+  return seen_.empty() ? 1 : least;
 }
 
 optics::Plane PlanarOptic::keep_plane(const PlanarTurn& turn) const {
+  const optics::Plane& plane = turn.plane;
   double farthest = 0;
   for (const glm::dvec3& p : outline_) farthest = std::max(farthest, glm::distance(p, plane_.point_mm));
   farthest += std::abs(plane_.height_mm(turn.eye_mm)) + glm::distance(turn.eye_mm, plane_.point_mm);
-  const glm::dvec3 out = turn.way == PlanarWay::reflected ? plane_.normal : -plane_.normal;
-  return {plane_.point_mm + (kPlaneRoom_mm + kPlaneRoomByDistance * farthest) * out, out};
+  const glm::dvec3 out = turn.way == PlanarWay::reflected ? plane.normal : -plane.normal;
+  return {plane.point_mm + (kPlaneRoom_mm + kPlaneRoomByDistance * farthest) * out, out};
 }
 
 RasterView PlanarOptic::map_view(std::size_t map, const RasterView& above) const {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "optics/planar_glass.h"
 #include "render/src/map_colors.h"
 #include "render/src/overlay_vertices.h"
 #include "render/src/planar_map_view.h"
@@ -27,7 +28,7 @@ struct PlanarSight {
   /// Whether what cannot be seen is looked for at all: facing alone, or also outlines in the view and
   /// aperture.
   bool checks = true;
-  glm::dvec2 tilt{0};  ///< of this sample, in standard deviations of a rough face
+  int sample = 0;  ///< of the picture: by it a rough face is tilted
 };
 
 class PlanarOptic final : public StackOptic {
@@ -42,7 +43,7 @@ class PlanarOptic final : public StackOptic {
   /// may be seen in it.
   bool update(const RasterView& camera, const FrameOptions& options, const PlanarSight& sight);
 
-  void optic_changed() override { map_changed(); }
+  void optic_changed() override;
   void map_changed() override;
   void set_bounds(const cad_import::BoundingBox&) override { map_changed(); }
   void place(const optics::Placement& placement) override;
@@ -117,7 +118,8 @@ class PlanarOptic final : public StackOptic {
   void set_plane();
   [[nodiscard]] bool see(const RasterView& camera, const PlanarSight& sight);
   void set_turns(const RasterView& camera, const PlanarSight& sight);
-  [[nodiscard]] optics::Plane tilted(glm::dvec2 tilt) const;
+  [[nodiscard]] optics::Plane tilted(const glm::dvec3& eye_mm, int sample) const;
+  [[nodiscard]] double least_w(const RasterView& camera, const PlanarTurn& turn) const;
   [[nodiscard]] std::optional<PlanarTurn> passed_turn(const RasterView& camera) const;
   [[nodiscard]] optics::Plane keep_plane(const PlanarTurn& turn) const;
   [[nodiscard]] bool reflection_matters(const RasterView& camera) const;
@@ -129,6 +131,7 @@ class PlanarOptic final : public StackOptic {
   std::size_t index_;
   RasterScene& raster_;
   optics::Placement placement_;
+  optics::PlanarFace face_;  ///< in its own frame, as tilts are
 
   // Of the last update(), in the world.
   std::vector<glm::dvec3> outline_;  ///< convex hull of the face

@@ -45,7 +45,7 @@ void PvrrFrame::place_optic(std::size_t index, const optics::Placement& placemen
 }
 
 void PvrrFrame::update(const Camera& camera, const FrameOptions& options, int levels, MapUse use) {
-  stack_.update(camera_view(camera, {options.width, options.height}), options, levels, use);
+  stack_.update(camera_view(camera, {options.width, options.height}), camera.sample, options, levels, use);
 }
 
 void PvrrFrame::draw_maps(glm::dvec2 offset_px, bool geometry, Overlay* overlay) {

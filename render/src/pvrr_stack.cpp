@@ -118,8 +118,10 @@ void PvrrStack::bounds_changed(const cad_import::BoundingBox& bounds) {
   });
 }
 
-void PvrrStack::update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use) {
+void PvrrStack::update(const RasterView& camera, int sample, const FrameOptions& options, int levels,
+                       MapUse use) {
   levels_ = levels;
+  sample_ = sample;
   camera_ = camera;
   bodies_.commit();
   left_out_ = pruned_ = curved_nodes_ = planar_nodes_ = 0;
@@ -138,11 +140,11 @@ void PvrrStack::update(const RasterView& camera, const FrameOptions& options, in
   for (std::size_t i = 0; i < queue.size(); ++i) update_children(*queue[i], options, queue);
 }
 
-bool PvrrStack::update_node(Node& node, const FrameOptions& options, const Sight& sight) {
+bool PvrrStack::update_node(Node& node, const FrameOptions& options, const Sight& sight) const {
   if (node.planar)
     return node.planar->update(
         sight.camera, options,
-        {sight.above, sight.texels_before, sight.aperture, options.check_visibility, glm::dvec2(0)});
+        {sight.above, sight.texels_before, sight.aperture, options.check_visibility, sample_});
   node.curved->update(sight.camera, options, sight.texels_before, sight.above, sight.use);
   return true;
 }

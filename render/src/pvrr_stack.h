@@ -34,8 +34,8 @@ class PvrrStack {
                    const cad_import::BoundingBox& bounds);
 
   /// Rays, views and sizes of all maps, from the top down: which optics a map shows depends on its view.
-  /// No deeper than `levels`. `use`: of the maps of the first level.
-  void update(const RasterView& camera, const FrameOptions& options, int levels, MapUse use);
+  /// No deeper than `levels`. `use`: of the maps of the first level. `sample`: Camera::sample.
+  void update(const RasterView& camera, int sample, const FrameOptions& options, int levels, MapUse use);
 
   /// All maps that have to be drawn, the deepest first, for the camera of the last update(). Overlays go into
   /// those of the first level alone.
@@ -80,7 +80,7 @@ class PvrrStack {
 
   [[nodiscard]] std::unique_ptr<Node> make_node(std::size_t index, int level, std::size_t patch) const;
   /// Whether the optic may be seen so.
-  static bool update_node(Node& node, const FrameOptions& options, const Sight& sight);
+  bool update_node(Node& node, const FrameOptions& options, const Sight& sight) const;
   [[nodiscard]] bool has_room(std::size_t index) const;
   void update_children(Node& node, const FrameOptions& options, std::vector<Node*>& next);
   void update_patch(Node& node, std::size_t patch, const FrameOptions& options,
@@ -102,7 +102,7 @@ class PvrrStack {
   OpticBodies bodies_;
   std::vector<optics::Placement> placements_;
   std::vector<std::unique_ptr<Node>> roots_;
-  int levels_ = 1;
+  int levels_ = 1, sample_ = 0;
   RasterView camera_;
   std::size_t curved_nodes_ = 0, planar_nodes_ = 0, left_out_ = 0, pruned_ = 0;
   PvrrDraw draw_;

@@ -154,13 +154,11 @@ void TracedPlanars::meet_tilted(const BeamLanes& beams, const int (&optic)[kLane
                                 MetLanes& at) const {
   meet(beams, optic, at);
   if (sample == 0 || !any_special_) return;
-  const glm::dvec2 pair = normal_pair(sample);
   for (int i = 0; i < kLanes; ++i) {
     if (optic[i] < 0 || !is_rough(scene_.optics[std::size_t(optic[i])])) continue;
     const optics::PlanarFace& face = faces_[std::size_t(optic[i])];
-    const glm::dvec2 tilt = pair * scene_.optics[std::size_t(optic[i])].material.roughness_rad;
-    constexpr double kSteepest = 1.5;  // rad: tangents stay finite
-    const glm::dvec3 normal = optics::tilted_normal(face, glm::clamp(tilt, -kSteepest, kSteepest));
+    const glm::dvec2 tilt = rough_tilt(scene_.optics[std::size_t(optic[i])].material.roughness_rad, sample);
+    const glm::dvec3 normal = optics::tilted_normal(face, tilt);
     const glm::dvec3 d = beams.direction.at(i), from = beams.point.at(i);
     // The ray, if need be beyond where it starts, has to come from the same side.
     const bool same_side = glm::dot(normal, d) * glm::dot(face.normal, d) > 0 &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -63,6 +64,13 @@ namespace catoptra::render {
   const double radius = std::sqrt(-2 * std::log(1 - (a - std::floor(a)))),
                angle = std::numbers::pi * (b - std::floor(b)), sign = sample % 2 == 1 ? 1 : -1;
   return sign * radius * glm::dvec2(std::cos(angle), std::sin(angle));
+}
+
+/// The tilt of a face of standard deviations `roughness_rad` in that sample, radians, for
+/// optics::tilted_normal: cut where tangents would grow without bound.
+[[nodiscard]] inline glm::dvec2 rough_tilt(const glm::dvec2& roughness_rad, int sample) {
+  constexpr double kSteepest = 1.5;
+  return glm::clamp(normal_pair(sample) * roughness_rad, -kSteepest, kSteepest);
 }
 
 /// The camera's axes in the world, unit. Throws catoptra::Error for a camera that has no picture.
