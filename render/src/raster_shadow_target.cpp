@@ -53,9 +53,11 @@ void RasterShadowTarget::fit(glm::ivec2 size, int multisample, int bits) {
   }
 }
 
-void RasterShadowTarget::clear() const {
-  const glm::vec4 lit(1);
+void RasterShadowTarget::clear(int lit_bits) const {
   for (int layer = layers_ - 1; layer >= 0; --layer) {
+    glm::vec4 lit;
+    for (int byte = 0; byte < 4; ++byte)
+      lit[byte] = float((1 << std::clamp(lit_bits - 32 * layer - 8 * byte, 0, 8)) - 1) / 255;
     bind(layer);
     glClearBufferfv(GL_COLOR, 0, &lit.x);
   }

@@ -15,8 +15,9 @@ class RasterShadowTarget {
   /// At least of that size, with exactly so many samples a pixel, for at least so many bits.
   void fit(glm::ivec2 size, int multisample, int bits);
 
-  /// All lights reach everything, nothing is in the depth and the count is 0, within the scissor rectangle.
-  void clear() const;
+  /// The lights of the first `lit_bits` bits reach everything, the others nothing; nothing is in the depth and
+  /// the count is 0, within the scissor rectangle.
+  void clear(int lit_bits) const;
   void bind(int layer) const;
   [[nodiscard]] const GlTexture& bits() const { return bits_; }
 

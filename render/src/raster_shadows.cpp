@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
 #include "render/src/raster_picture.h"
 #include "render/src/raster_scene.h"
+#include "render/src/scissor_within.h"
 
 namespace catoptra::render {
 namespace {
@@ -25,7 +27,7 @@ constexpr float kCapSlope = 0.5f, kCapRoundings = 8;
 // In parallel views nothing can be drawn at infinity: volumes of point lights end at 10 km.
 constexpr float kParallelReach_mm = 1e7f;
 
-std::size_t bits_of(const std::vector<ShadowPoint>& points) {
+std::size_t bits_of(std::span<const ShadowPoint> points) {
   std::size_t bits = 0;
   for (const ShadowPoint& point : points) bits = std::max(bits, std::size_t(point.bit + 1));
   return bits;
@@ -273,7 +275,8 @@ void RasterShadows::draw(const RasterView& view, int multisample, const std::fun
   statistics_.time_ms += gl_time_ms([&] {
     update();
     target_.fit(view.corner + view.size, multisample, int(bits_of(points_)));
-    target_.clear();
+    // Virtual lights are nowhere but in their light volumes.
+    target_.clear(int(bits_of(std::span(points_).first(lights_.points.size()))));
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_depth();
     glDisable(GL_CLIP_DISTANCE0);  // of the view; not every program below writes it
@@ -300,26 +303,23 @@ void RasterShadows::draw(const RasterView& view, int multisample, const std::fun
 
 void RasterShadows::count_direct(Counting& counting, std::size_t point, int bit) {
   for (const auto& volume : direct_[point])
-    if (volume) count(counting, *volume, bit);
-  if (counting.most > 0) fold(counting, bit, true);
+    if (volume) count(counting, *volume, bit, Fold::shade);
+  if (counting.most > 0) fold(counting, bit, Fold::shade);
 }
 
 void RasterShadows::count_beam(Counting& counting, const Beam& beam, int bit) {
-  // Its pieces lie beside each other, so that counts stay small however many there are; a fold between them
-  // would take the light from where it is.
-  for (const ShadowVolume::Batch& batch : beam.light_volume.volume.batches)
-    draw_volume(counting, beam.light_volume, batch);
-  // Where the light volume is not, the light is not.
-  const bool anywhere = counting.most > 0;
-  fold(counting, bit, false);
-  if (!anywhere) return;
-  count(counting, beam.shadows, bit);
-  if (counting.most > 0) fold(counting, bit, true);
+  const ScissorWithin scissor(counting.view, beam.aperture.mesh.positions, beam.light_volume.light);
+  if (scissor.empty()) return;
+  count(counting, beam.light_volume, bit, Fold::light);
+  if (counting.most == 0) return;
+  fold(counting, bit, Fold::light);
+  count(counting, beam.shadows, bit, Fold::shade);
+  if (counting.most > 0) fold(counting, bit, Fold::shade);
 }
 
-void RasterShadows::count(Counting& counting, const Volume& volume, int bit) {
+void RasterShadows::count(Counting& counting, const Volume& volume, int bit, Fold by) {
   for (const ShadowVolume::Batch& batch : volume.volume.batches) {
-    if (counting.most + batch.most > kMostOverlaps) fold(counting, bit, true);
+    if (counting.most + batch.most > kMostOverlaps) fold(counting, bit, by);
     draw_volume(counting, volume, batch);
   }
 }
@@ -371,16 +371,16 @@ void RasterShadows::draw_volume(Counting& counting, const Volume& volume, const 
   glDisable(GL_DEPTH_CLAMP);
 }
 
-/// Takes the light from where the count is not 0, or where it is, and sets the count to 0.
-void RasterShadows::fold(Counting& counting, int bit, bool where_counted) {
+/// Also sets the count to 0.
+void RasterShadows::fold(Counting& counting, int bit, Fold by) {
   glUseProgram(fold_program_.id());
   glUniform1ui(kBits, 1u << (bit % 32));
   glBindVertexArray(nothing_.id());
   glDisable(GL_DEPTH_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glEnable(GL_COLOR_LOGIC_OP);
-  glLogicOp(GL_AND_INVERTED);
-  glStencilFunc(where_counted ? GL_NOTEQUAL : GL_EQUAL, 0, 0xff);
+  glLogicOp(by == Fold::light ? GL_OR : GL_AND_INVERTED);
+  glStencilFunc(GL_NOTEQUAL, 0, 0xff);
   glStencilOp(GL_ZERO, GL_ZERO, GL_ZERO);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDisable(GL_COLOR_LOGIC_OP);

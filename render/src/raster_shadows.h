@@ -82,9 +82,11 @@ class RasterShadows {
   static void upload(Volume& volume);
   void count_direct(Counting& counting, std::size_t point, int bit);
   void count_beam(Counting& counting, const Beam& beam, int bit);
-  void count(Counting& counting, const Volume& volume, int bit);
+  /// What the count becomes: a bit is taken where it is not 0, or set there.
+  enum class Fold { shade, light };
+  void count(Counting& counting, const Volume& volume, int bit, Fold by);
   void draw_volume(Counting& counting, const Volume& volume, const ShadowVolume::Batch& batch);
-  void fold(Counting& counting, int bit, bool where_counted);
+  void fold(Counting& counting, int bit, Fold by);
 
   const Scene& scene_;
   bool levels_;
