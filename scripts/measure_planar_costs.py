@@ -181,7 +181,7 @@ def main():
         bench = Bench(arguments, folder)
         if not arguments.shadows_alone:
             rows = [bench.row(kind, faces, depth) for kind in KINDS for faces in COUNTS for depth in DEPTHS]
-            facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[3:] for depth in DEPTHS]
+            facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[2:] for depth in DEPTHS]
         shadows = [bench.row("pane", faces, depth, shadows=True) for faces in (0, 5, 20) for depth in (1, 2) if faces or depth == 1]
     write_tables(arguments.docs / "planar-costs.md", {"one front": table(rows), "two fronts": table(facing), "shadows": shadow_table(shadows)})
     if arguments.shadows_alone:
