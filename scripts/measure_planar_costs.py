@@ -121,7 +121,7 @@ def svg(charts):
     width, height, left, top = 330, 250, 52, 34
     most = max(y for _, lines in charts for *_, points in lines for _, y in points)
     decades = max(1, math.ceil(math.log10(most)))
-    total = len(charts) * (width + left + 110)
+    total = len(charts) * (width + left + 110) + left + 20
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{total}" height="{height + top + 50}" font-family="sans-serif" font-size="12">']
     out.append('<rect width="100%" height="100%" fill="white"/>')
     for number, (title, lines) in enumerate(charts):
