@@ -121,7 +121,7 @@ def svg(charts):
     width, height, left, top = 330, 250, 52, 34
     most = max(y for _, lines in charts for *_, points in lines for _, y in points)
     decades = max(1, math.ceil(math.log10(most)))
-    total = len(charts) * (width + left + 110)
+    total = len(charts) * (width + left + 110) + left + 20
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{total}" height="{height + top + 50}" font-family="sans-serif" font-size="12">']
     out.append('<rect width="100%" height="100%" fill="white"/>')
     for number, (title, lines) in enumerate(charts):
@@ -181,7 +181,7 @@ def main():
         bench = Bench(arguments, folder)
         if not arguments.shadows_alone:
             rows = [bench.row(kind, faces, depth) for kind in KINDS for faces in COUNTS for depth in DEPTHS]
-            facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[3:] for depth in DEPTHS]
+            facing = [bench.row(kind, faces, depth, facing=True) for kind in KINDS for faces in COUNTS[2:] for depth in DEPTHS]
         shadows = [bench.row("pane", faces, depth, shadows=True) for faces in (0, 5, 20) for depth in (1, 2) if faces or depth == 1]
     write_tables(arguments.docs / "planar-costs.md", {"one front": table(rows), "two fronts": table(facing), "shadows": shadow_table(shadows)})
     if arguments.shadows_alone:
