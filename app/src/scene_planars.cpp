@@ -110,7 +110,12 @@ optics::Optic make_planar(const TomlTable& planar, const SceneContext& context, 
 void read_planar(const TomlTable& planar, const SceneContext& context, SceneFile& result) {
   const bool corners = planar.has("corners"), file = planar.has("file");
   if (corners == file)
-    planar.fail(corners ? "corners" : "", corners ? "corners excludes file" : "needs corners or file");
+    planar.fail(corners ? "corners" : "", corners ? "corners excludes file" : "needs corners or file",
+                "give the corners, or a file with a planar face");
+  for (const char* key : {"faces", "translate", "rotate_deg", "scale", "unit"})
+    if (corners && planar.has(key))
+      planar.fail(key, "belongs to a file, and this planar optic has corners",
+                  "corners are points of the scene, in its unit: move them instead");
   std::optional<FileEntry> entry;
   if (file) entry = read_file_entry(planar, context);
   const cad_import::CadModel model =

@@ -136,6 +136,9 @@ constexpr BadScene kBadScenes[] = {
      "line 6, planar.name", "two optics"},
     {"PlanarCorner", "[[planar]]\nkind = \"mirror\"\ncorners = [[0, 0, 0], [1, 0, 0], [0, 1]]\n",
      "line 3, planar.corners", "3 numbers"},
+    {"PlanarCornersMoved",
+     "[[planar]]\nkind = \"mirror\"\ncorners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ntranslate = [0, 0, 1]\n",
+     "line 4, planar.translate", "belongs to a file"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Slips, BadSceneFile, testing::ValuesIn(kBadScenes),
