@@ -101,6 +101,15 @@ struct LightPath {
 [[nodiscard]] double unit_irradiance(const LightPlace& place, const glm::dvec3& point,
                                      const glm::dvec3& normal);
 
+/// dot(plane, (P, 1)): for a unit normal the height of a point above the plane, mm.
+[[nodiscard]] double side_of(const glm::dvec4& plane, const glm::dvec3& point);
+
+/// From `point` to the light, mm for a position; not normalised.
+[[nodiscard]] glm::dvec3 towards(const LightPlace& place, const glm::dvec3& point);
+
+/// Where the line from `point` to the light meets `plane`, which it must not run along.
+[[nodiscard]] glm::dvec3 crossing(const glm::dvec4& plane, const LightPlace& place, const glm::dvec3& point);
+
 /// The part of a convex polygon with dot(plane, (P, 1)) >= 0; empty where there is none.
 [[nodiscard]] ConvexPolygon clip(const ConvexPolygon& polygon, const glm::dvec4& plane);
 

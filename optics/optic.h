@@ -67,8 +67,11 @@ struct Optic {
 };
 
 /// Whether light both passes and is reflected at a plane.
+[[nodiscard]] inline bool is_planar_glass(OpticKind kind) {
+  return kind == OpticKind::refractor || kind == OpticKind::pane;
+}
 [[nodiscard]] inline bool is_planar_glass(const Optic& optic) {
-  return optic.kind == OpticKind::refractor || optic.kind == OpticKind::pane;
+  return is_planar_glass(optic.kind);
 }
 
 [[nodiscard]] inline const char* kind_name(OpticKind kind) {

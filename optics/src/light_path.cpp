@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cad_import/error.h"
+#include "optics/planar_glass.h"
 #include "optics/refraction.h"
 
 namespace catoptra::optics {
@@ -15,15 +16,6 @@ namespace {
 constexpr double kLeastSlope = 1e-6;
 /// Least area of an aperture over that of its face: below it clipping leaves nothing but rounding.
 constexpr double kLeastArea = 1e-12;
-
-double side_of(const glm::dvec4& plane, const glm::dvec3& point) {
-  return glm::dot(glm::dvec3(plane), point) + plane.w;
-}
-
-/// From `point` to the light, not normalised.
-glm::dvec3 towards(const LightPlace& place, const glm::dvec3& point) {
-  return glm::dvec3(place) - place.w * point;
-}
 
 /// Twice the area, as a vector.
 glm::dvec3 area_vector(const ConvexPolygon& polygon) {
@@ -39,12 +31,6 @@ double total_area(std::span<const ConvexPolygon> pieces) {
   return sum;
 }
 
-/// Where the line from `point` to the light meets the light's face.
-glm::dvec3 crossing(const glm::dvec4& plane, const LightPlace& place, const glm::dvec3& point) {
-  const glm::dvec3 way = towards(place, point);
-  return point - side_of(plane, point) / glm::dot(glm::dvec3(plane), way) * way;
-}
-
 double cosine_at(const LightFace& face, const LightPlace& place, const glm::dvec3& point) {
   return std::min(1.0, std::abs(glm::dot(face.normal, glm::normalize(towards(place, point)))));
 }
@@ -55,7 +41,7 @@ glm::dvec4 plane_through(const glm::dvec3& normal, const glm::dvec3& point) {
 
 /// Indices of the light that comes from the side of `incoming` (unit normal of the face on that side).
 void set_indices(const LightFace& face, bool from_front, VirtualLight& light) {
-  if (!(face.kind == OpticKind::refractor || face.kind == OpticKind::pane)) return;
+  if (!is_planar_glass(face.kind)) return;
   const bool out = face.kind == OpticKind::refractor && !from_front;  // a pane has air on both sides
   light.n_from = out ? face.ior : 1;
   light.n_to = out ? 1 : face.ior;
@@ -192,6 +178,19 @@ ConvexPolygon clip(const ConvexPolygon& polygon, const glm::dvec4& plane) {
   return inside.size() < 3 ? ConvexPolygon{} : inside;
 }
 
+double side_of(const glm::dvec4& plane, const glm::dvec3& point) {
+  return glm::dot(glm::dvec3(plane), point) + plane.w;
+}
+
+glm::dvec3 towards(const LightPlace& place, const glm::dvec3& point) {
+  return glm::dvec3(place) - place.w * point;
+}
+
+glm::dvec3 crossing(const glm::dvec4& plane, const LightPlace& place, const glm::dvec3& point) {
+  const glm::dvec3 way = towards(place, point);
+  return point - side_of(plane, point) / glm::dot(glm::dvec3(plane), way) * way;
+}
+
 std::vector<glm::dvec4> light_volume(const VirtualLight& light, const ConvexPolygon& piece) {
   std::vector<glm::dvec4> planes{light.lit_side};
   // Seen from the light, sides run about the piece in one sense, which its area tells.
@@ -233,8 +232,7 @@ glm::dvec3 face_share(const LightFace& face, const VirtualLight& light, double c
   if (face.kind == OpticKind::mirror) return glm::dvec3(face.reflectance);
   const double r =
       fresnel_dielectric(std::clamp(cos_theta_i, 0.0, 1.0), light.n_from, light.n_to).unpolarised;
-  // A plate's two faces with all that goes to and fro between them, incoherent.
-  const double reflected = face.kind == OpticKind::pane ? 2 * r / (1 + r) : r;
+  const double reflected = face.kind == OpticKind::pane ? plate_reflectance(r) : r;
   return light.reflected ? glm::dvec3(reflected) : (1 - reflected) * glm::dvec3(face.tint);
 }
 

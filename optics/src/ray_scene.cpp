@@ -85,6 +85,15 @@ RTCIntersectContext query_context(bool coherent) {
   return context;
 }
 
+/// What Embree wants to know of a lane besides its ray, of packets with hits and without.
+template <typename Packet>
+void prepare_lane(Packet& packet, std::size_t i, std::uint32_t mask, int (&valid)[kLanes]) {
+  valid[i] = packet.t_max[i] >= packet.t_min[i] ? -1 : 0;
+  packet.mask[i] = mask;
+  packet.time[i] = 0;
+  packet.flags[i] = 0;
+}
+
 template <typename EmbreeRay>
 void set_ray(EmbreeRay& out, const Ray& ray, std::uint32_t mask) {
   out.org_x = static_cast<float>(ray.origin_mm.x);
@@ -237,10 +246,7 @@ struct RayScene::Impl {
   void query(RayPacket16& packet, std::uint32_t mask, bool coherent) const {
     alignas(64) int valid[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i) {
-      valid[i] = packet.t_max[i] >= packet.t_min[i] ? -1 : 0;
-      packet.mask[i] = mask;
-      packet.time[i] = 0;
-      packet.flags[i] = 0;
+      prepare_lane(packet, i, mask, valid);
       packet.object[i] = kNoHit;
       packet.instance[i] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -379,12 +385,7 @@ void RayScene::intersect16(RayPacket16& packet, std::uint32_t mask, bool coheren
 
 std::uint32_t RayScene::occluded16(ShadowPacket16& packet, std::uint32_t mask, bool coherent) const {
   alignas(64) int valid[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    valid[i] = packet.t_max[i] >= packet.t_min[i] ? -1 : 0;
-    packet.mask[i] = mask;
-    packet.time[i] = 0;
-    packet.flags[i] = 0;
-  }
+  for (std::size_t i = 0; i < kLanes; ++i) prepare_lane(packet, i, mask, valid);
   RTCIntersectContext context = query_context(coherent);
   rtcOccluded16(valid, impl_->scene.get(), &context, reinterpret_cast<RTCRay16*>(&packet));
   std::uint32_t met = 0;

@@ -9,16 +9,11 @@
 namespace catoptra::render {
 namespace {
 
+using optics::side_of;
+using optics::towards;
+
 constexpr int kLanes = LitLanes::kLanes;
 constexpr float kUnitDistance2_mm2 = 1e6f;  // intensity is the irradiance at 1 m
-
-double side_of(const glm::dvec4& plane, const glm::dvec3& point) {
-  return glm::dot(glm::dvec3(plane), point) + plane.w;
-}
-
-glm::dvec3 towards(const optics::LightPlace& place, const glm::dvec3& point) {
-  return glm::dvec3(place) - place.w * point;
-}
 
 /// Each lane's irradiance of a light of unit power by Lambert's cosine law; 0 where it is turned away.
 void set_shares(const optics::LightPlace& place, const LitLanes& lanes, float (&share)[kLanes]) {
@@ -120,8 +115,7 @@ bool step_back(const optics::RayScene& rays, const optics::LightFace& face, doub
     set_idle(packet, i);
     if (!way.lit[i]) continue;
     const glm::dvec3 to_light = towards(light.place, way.point[i]);
-    const glm::dvec3 q =
-        way.point[i] - side_of(light.lit_side, way.point[i]) / glm::dot(lit_normal, to_light) * to_light;
+    const glm::dvec3 q = optics::crossing(light.lit_side, light.place, way.point[i]);
     const glm::dvec3 from = moved(way.point[i], way.normal[i], to_light, way.margin[i]);
     set_ray(packet, i, from, q + margin * lit_normal - from, false);
     const double cosine = std::abs(glm::dot(face.normal, glm::normalize(towards(before, q))));

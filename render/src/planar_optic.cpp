@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "optics/planar_glass.h"
 #include "optics/reflection.h"
 #include "optics/refraction.h"
 #include "render/src/sampling.h"
@@ -37,7 +38,7 @@ glm::ivec2 stepped(glm::ivec2 size) {
 
 double reflectance(OpticKind kind, double cos_theta_i, double index_ratio) {
   const double r = optics::fresnel_dielectric(cos_theta_i, 1, index_ratio).unpolarised;
-  return kind == OpticKind::pane ? 2 * r / (1 + r) : r;
+  return kind == OpticKind::pane ? optics::plate_reflectance(r) : r;
 }
 
 }  // namespace

@@ -98,12 +98,7 @@ bool TracedChains::find_next(const optics::RayPacket16& hits, const LeftOptics& 
     const int optic = int(hits.object[i] - first_optic);
     if (is_dark_side(scene_.optics[std::size_t(optic)], facing(hits, i))) continue;
     found = true;
-    met.optic[i] = optic;
-    met.entered[i] = optics::LensSide::front;
-    met.distance[i] = hits.t_max[i];
-    met.u[i] = hits.u[i];
-    met.v[i] = hits.v[i];
-    met.triangle[i] = hits.triangle[i];
+    set_met(hits, i, optic, optics::LensSide::front, met);
   }
   for (std::size_t mirror = 0; own >= 0 && mirror < mirrors_.size(); ++mirror) {
     bool asked[kLanes], any = false;

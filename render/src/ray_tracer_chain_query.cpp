@@ -83,6 +83,15 @@ void copy_hit(const optics::RayPacket16& from, int i, optics::RayPacket16& to) {
   to.object[i] = from.object[i];
 }
 
+void set_met(const optics::RayPacket16& hits, int lane, int optic, optics::LensSide entered, MetOptics& met) {
+  met.optic[lane] = optic;
+  met.entered[lane] = entered;
+  met.distance[lane] = hits.t_max[lane];
+  met.u[lane] = hits.u[lane];
+  met.v[lane] = hits.v[lane];
+  met.triangle[lane] = hits.triangle[lane];
+}
+
 void copy_hits(const optics::RayPacket16& from, ShadeLanes& to) {
   for (int i = 0; i < kLanes; ++i) {
     to.position_x[i] = from.origin_x[i] + from.t_max[i] * from.direction_x[i];
@@ -172,12 +181,7 @@ bool find_own(const OwnSide& own, int optic, optics::LensSide entered, const opt
       }
       if (own_hit) {
         found = true;
-        met.optic[i] = optic;
-        met.entered[i] = entered;
-        met.distance[i] = query.t_max[i];
-        met.u[i] = query.u[i];
-        met.v[i] = query.v[i];
-        met.triangle[i] = query.triangle[i];
+        set_met(query, i, optic, entered, met);
       }
       query.t_max[i] = query.t_min[i] - 1;
     }

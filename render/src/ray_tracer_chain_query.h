@@ -23,6 +23,9 @@ void copy_hit(const optics::RayPacket16& from, int lane, optics::RayPacket16& to
 /// All lanes' hits for shading, but for their footprint.
 void copy_hits(const optics::RayPacket16& from, ShadeLanes& to);
 
+/// The hit of one lane is where it meets that side of optic `optic` next.
+void set_met(const optics::RayPacket16& hits, int lane, int optic, optics::LensSide entered, MetOptics& met);
+
 /// Nearest hits among everything but the own optic of each lane (object number first_optic + optic), which
 /// rays pass through. Lanes with t_max < t_min are inactive.
 void query_past_own(const optics::RayScene& scene, std::uint32_t first_optic,

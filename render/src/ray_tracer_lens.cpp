@@ -336,12 +336,7 @@ bool TracedLenses::find_side(const Lens& lens, optics::LensSide side, const opti
   for (int i = 0; i < kLanes; ++i) {
     if (!asked[i] || query.object[i] == optics::kNoHit) continue;
     found = true;
-    met.optic[i] = int(lens.optic);
-    met.entered[i] = side;
-    met.distance[i] = query.t_max[i];
-    met.u[i] = query.u[i];
-    met.v[i] = query.v[i];
-    met.triangle[i] = query.triangle[i];
+    set_met(query, i, int(lens.optic), side, met);
   }
   return found;
 }

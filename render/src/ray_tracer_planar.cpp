@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "optics/refraction.h"
+#include "render/src/ray_tracer_chain_query.h"
 #include "render/src/sampling.h"
 
 namespace catoptra::render {
@@ -130,12 +131,7 @@ bool TracedPlanars::find_next(const optics::RayPacket16& rays, const LeftOptics&
         continue;
       }
       found = true;
-      met.optic[i] = int(optic);
-      met.entered[i] = optics::LensSide::front;
-      met.distance[i] = query.t_max[i];
-      met.u[i] = query.u[i];
-      met.v[i] = query.v[i];
-      met.triangle[i] = query.triangle[i];
+      set_met(query, i, int(optic), optics::LensSide::front, met);
       query.t_max[i] = query.t_min[i] - 1;
     }
   }

@@ -9,18 +9,12 @@ namespace {
 
 using optics::ConvexPolygon;
 using optics::LightPlace;
+using optics::side_of;
+using optics::towards;
 using optics::VirtualLight;
 
 // Casters have to be so far from a face, mm: the face itself, which the mesh has in floats, casts none.
 constexpr double kClearOfFace_mm = 0.01;
-
-double side_of(const glm::dvec4& plane, const glm::dvec3& p) {
-  return glm::dot(glm::dvec3(plane), p) + plane.w;
-}
-
-glm::dvec3 towards(const LightPlace& place, const glm::dvec3& p) {
-  return glm::dvec3(place) - place.w * p;
-}
 
 /// The plane moved so that less lies on its positive side.
 glm::dvec4 moved_in(const glm::dvec4& plane, double by_mm) {
@@ -115,10 +109,7 @@ class Casters {
     if (before) planes.push_back(moved_in(before->lit_side, kClearOfFace_mm));
     TriangleSoup soup;
     const auto add = [&](ConvexPolygon part) {
-      for (glm::dvec3& p : part) {
-        const glm::dvec3 way = towards(place, p);
-        p -= side_of(light.lit_side, p) / glm::dot(glm::dvec3(light.lit_side), way) * way;
-      }
+      for (glm::dvec3& p : part) p = optics::crossing(light.lit_side, place, p);
       add_fan(soup, part);
     };
     for (const TriangleSoup& all : casters_) for_each_inside(all, planes, add);
